@@ -1,0 +1,1 @@
+//! Files for covmap: RON, JSON lines, map_server maps, pictures

@@ -1,0 +1,1 @@
+//! The sensor model of coverage maps: how a scan changes the belief

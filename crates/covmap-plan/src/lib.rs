@@ -1,0 +1,1 @@
+//! Where to measure next: view-points by closest location and expected information gain

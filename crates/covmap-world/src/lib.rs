@@ -1,0 +1,1 @@
+//! The truth: simulated worlds, their sonar echoes, driving in them, and the exact coverage of every cell

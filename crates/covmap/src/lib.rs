@@ -1,0 +1,39 @@
+//! Coverage maps: what the robot believes about *how much* of each cell is covered.
+//!
+//! Section 2 of Stachniss & Burgard (2003), equation (11). The principal type is
+//! [`CoverageMap`]: a [`Grid`] of cells with a posterior over the coverage of each.
+//!
+//! This crate knows nothing of sensors, of sensor models and of robots: it stores
+//! posteriors, multiplies evidence into them, and measures how uncertain they are.
+//!
+//! # Units
+//! Metres, nats; coverage in [0, 1], 0 for an empty cell and 1 for a full one.
+//!
+//! ```
+//! use covmap::{CoverageMap, Grid};
+//! use nalgebra::Point2;
+//!
+//! let grid = Grid::new(Point2::origin(), 0.1, 40, 30)?;
+//! let mut map = CoverageMap::new(grid, 11)?;
+//! let cell = grid.cell_at(Point2::new(1.23, 0.45)).expect("inside the grid");
+//! assert!(!map.is_known(cell));
+//!
+//! // Evidence that this cell is covered 20 %, one weight for each bin 0, 0.1, … 1:
+//! let evidence = [0.1, 0.5, 2.0, 0.5, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1];
+//! let change = map.multiply(cell, &evidence).expect("the cell is not pinned");
+//! assert_eq!(map.mode(cell), 0.2);
+//! assert!(change.after < change.before);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod belief_file;
+mod coverage_map;
+mod grid;
+mod histogram;
+mod raster;
+
+pub use belief_file::BeliefFileError;
+pub use coverage_map::{Change, CoverageMap, MapError};
+pub use grid::{Cell, Grid, GridError, MAX_CELLS};
+pub use histogram::{Histogram, MAX_BINS, MIN_BINS, PROBABILITY_FLOOR, bin_coverage, product};
+pub use raster::Raster;

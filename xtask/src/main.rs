@@ -1,0 +1,2 @@
+//! The one program of covmap.
+fn main() {}
