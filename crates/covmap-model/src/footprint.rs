@@ -1,0 +1,420 @@
+//! Which cells a beam covers: the one traversal of cones and lines in this project.
+
+use covmap::{Cell, Grid};
+use covmap_sonar::SonarRing;
+use nalgebra::{Isometry2, Point2, Vector2};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Bearings closer than this to the border of a sector lie on it [rad].
+const BORDER: f64 = 1e-9;
+
+/// Which cells belong to a beam.
+///
+/// Choice: Eq. (9) has no angle term, so a beam covers all cells within an angle.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum FootprintRule {
+    /// For a ring with a centre: a cell belongs to the beam whose axis is nearest to its
+    /// bearing **from the robot's centre**, and within `half_angle` of it. Sectors are
+    /// half-open, so that 24 of 7.5° tile the plane. (Sectors from sensors that stand .25 m
+    /// apart would leave strips of cells between them uncovered.)
+    Sectors {
+        /// Half of a sector's angle \[rad\].
+        half_angle: f64,
+    },
+    /// For any arrangement: the cells within `half_angle` of the beam's axis, seen from the
+    /// sensor, half-open, and those that the axis itself traverses, which are all there are
+    /// where the beam is narrower than a cell.
+    Cones {
+        /// Half of the cone's angle \[rad\]; 0 for a line.
+        half_angle: f64,
+    },
+}
+
+/// Why a footprint cannot be made.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FootprintError {
+    /// The half-angle is impossible.
+    #[error("model.footprint: half_angle {0} rad must lie in [0, 1.5], and above 0 for sectors")]
+    HalfAngle(f64),
+    /// Two sensors look the same way, so that sectors cannot tell them apart.
+    #[error(
+        "model.footprint: sensors {0} and {1} look in the same direction; use Cones for this ring"
+    )]
+    SameDirection(usize, usize),
+}
+
+/// A cell that a beam covers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct FootprintCell {
+    /// The cell.
+    pub cell: Cell,
+    /// d^l, the distance from the sensor to the cell's centre \[m\].
+    pub cell_distance: f64,
+}
+
+/// A beam's sector in the frame of the robot.
+#[derive(Debug, Clone)]
+struct Sector {
+    /// Where the sensor sits; ranges are measured from here.
+    sensor: Point2<f64>,
+    /// Where the sensor looks.
+    axis: Vector2<f64>,
+    /// Where bearings are measured from.
+    apex: Point2<f64>,
+    /// The borders: a bearing `b` is inside if `first ≤ b < last`, counter-clockwise.
+    first: Vector2<f64>,
+    last: Vector2<f64>,
+    /// Whether cells that the axis traverses belong to the beam as well.
+    with_axis: bool,
+}
+
+/// The footprints of all beams of a ring.
+#[derive(Debug, Clone)]
+pub struct Footprint {
+    sectors: Vec<Sector>,
+}
+
+fn direction(angle: f64) -> Vector2<f64> {
+    let (sin, cos) = libm::sincos(angle);
+    Vector2::new(cos, sin)
+}
+
+impl Footprint {
+    /// The footprints of a ring's beams.
+    ///
+    /// # Errors
+    /// If the half-angle is impossible, or sectors cannot tell two sensors apart.
+    pub fn new(ring: &SonarRing, rule: &FootprintRule) -> Result<Self, FootprintError> {
+        let angles: Vec<f64> = ring.beams().iter().map(|b| b.pose.rotation.angle()).collect();
+        let widths = match *rule {
+            FootprintRule::Cones { half_angle } if (0.0..=1.5).contains(&half_angle) => {
+                vec![(half_angle, half_angle); angles.len()]
+            }
+            FootprintRule::Sectors { half_angle } if half_angle > 0.0 && half_angle <= 1.5 => {
+                sector_widths(&angles, half_angle)?
+            }
+            FootprintRule::Cones { half_angle } | FootprintRule::Sectors { half_angle } => {
+                return Err(FootprintError::HalfAngle(half_angle));
+            }
+        };
+        let from_sensor = matches!(rule, FootprintRule::Cones { .. });
+        let sector = |(beam, (right, left)): (usize, (f64, f64))| {
+            let sensor = Point2::from(ring.beams()[beam].pose.translation.vector);
+            Sector {
+                sensor,
+                axis: direction(angles[beam]),
+                apex: if from_sensor { sensor } else { Point2::origin() },
+                first: direction(angles[beam] - right),
+                last: direction(angles[beam] + left),
+                with_axis: from_sensor,
+            }
+        };
+        Ok(Self { sectors: widths.into_iter().enumerate().map(sector).collect() })
+    }
+
+    /// The number of beams.
+    pub fn beams(&self) -> usize {
+        self.sectors.len()
+    }
+
+    /// Visits the cells of a grid that a beam covers up to a distance from its sensor, row
+    /// by row.
+    ///
+    /// `pose` is `world_from_robot`, with any heading; `reach` is the largest cell distance
+    /// \[m\]. Nothing is covered behind the sensor. A pose that is not finite covers nothing.
+    ///
+    /// # Panics
+    /// If there is no such beam.
+    pub fn for_each_cell(
+        &self,
+        grid: &Grid,
+        pose: &Isometry2<f64>,
+        beam: usize,
+        reach: f64,
+        mut visit: impl FnMut(FootprintCell),
+    ) {
+        let sector = self.sectors[beam].moved(pose);
+        let (low, high) = sector.bounds(reach);
+        if !(low.iter().chain(high.iter()).all(|v| v.is_finite()) && reach >= 0.0) {
+            return;
+        }
+        let (first, last) = (grid.unbounded_cell_at(low), grid.unbounded_cell_at(high));
+        let side = |n: usize| i32::try_from(n).unwrap_or(i32::MAX) - 1;
+        for y in first.y.max(0)..=last.y.min(side(grid.height())) {
+            let (left, right) = sector.row_interval(grid, y, low.x, high.x);
+            let columns = |x: f64| grid.unbounded_cell_at(Point2::new(x, low.y)).x;
+            for x in columns(left).max(0)..=columns(right).min(side(grid.width())) {
+                let cell = Cell::new(x, y);
+                if let Some(cell_distance) = sector.covers(grid, cell, reach) {
+                    visit(FootprintCell { cell, cell_distance });
+                }
+            }
+        }
+    }
+}
+
+/// The angles to the right and to the left of each axis: half of the way to the next axis,
+/// but no more than `half_angle`.
+fn sector_widths(angles: &[f64], half_angle: f64) -> Result<Vec<(f64, f64)>, FootprintError> {
+    let turn = |angle: f64| angle - TAU * (angle / TAU).floor();
+    let mut order: Vec<usize> = (0..angles.len()).collect();
+    order.sort_by(|a, b| turn(angles[*a]).total_cmp(&turn(angles[*b])));
+    let mut widths = vec![(half_angle, half_angle); angles.len()];
+    for (i, beam) in order.iter().enumerate() {
+        let next = order[(i + 1) % order.len()];
+        if next == *beam {
+            break;
+        }
+        let gap = turn(angles[next] - angles[*beam]);
+        if !(1e-6..=TAU - 1e-6).contains(&gap) {
+            return Err(FootprintError::SameDirection(*beam, next));
+        }
+        widths[*beam].1 = half_angle.min(0.5 * gap);
+        widths[next].0 = half_angle.min(0.5 * gap);
+    }
+    Ok(widths)
+}
+
+impl Sector {
+    fn moved(&self, pose: &Isometry2<f64>) -> Self {
+        Self {
+            sensor: pose * self.sensor,
+            axis: pose * self.axis,
+            apex: pose * self.apex,
+            first: pose * self.first,
+            last: pose * self.last,
+            with_axis: self.with_axis,
+        }
+    }
+
+    /// A box that holds all points of the sector within `reach` of the sensor.
+    fn bounds(&self, reach: f64) -> (Point2<f64>, Point2<f64>) {
+        let radius = reach + (self.sensor - self.apex).norm();
+        let mut low = self.apex.inf(&self.sensor);
+        let mut high = self.apex.sup(&self.sensor);
+        let mut include = |direction: Vector2<f64>| {
+            let point = self.apex + direction * radius;
+            (low, high) = (low.inf(&point), high.sup(&point));
+        };
+        [self.first, self.last, self.axis].into_iter().for_each(&mut include);
+        for quarter in [Vector2::x(), Vector2::y(), -Vector2::x(), -Vector2::y()] {
+            if self.first.perp(&quarter) >= 0.0
+                && quarter.perp(&self.last) >= 0.0
+                && quarter.dot(&self.axis) > 0.0
+            {
+                include(quarter);
+            }
+        }
+        (low, high)
+    }
+
+    /// An interval of x that holds all cells of row `y` that the sector may cover: that of
+    /// its borders and axis within the row, one cell wider on both sides.
+    fn row_interval(&self, grid: &Grid, y: i32, low: f64, high: f64) -> (f64, f64) {
+        let r = grid.resolution();
+        let bottom = grid.lower_corner(Cell::new(0, y)).y - r;
+        let top = bottom + 3.0 * r;
+        let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut include = |x: f64| (left, right) = (left.min(x), right.max(x));
+        let origins = [(self.apex, self.first), (self.apex, self.last), (self.sensor, self.axis)];
+        for (origin, direction) in origins {
+            if (bottom..=top).contains(&origin.y) {
+                include(origin.x);
+            }
+            for edge in [bottom, top] {
+                let along = (edge - origin.y) / direction.y;
+                if along >= 0.0 {
+                    include(origin.x + along * direction.x);
+                }
+            }
+        }
+        // A row that a border does not leave on one side is open to the end of the box.
+        let centre = 0.5 * (bottom + top);
+        let inside = |x: f64| self.holds_bearing(Point2::new(x, centre) - self.apex);
+        let left = if inside(low) || left.is_infinite() { low } else { left.max(low) };
+        let right = if inside(high) || right.is_infinite() { high } else { right.min(high) };
+        (left - r, right + r)
+    }
+
+    fn holds_bearing(&self, offset: Vector2<f64>) -> bool {
+        let border = BORDER * offset.norm();
+        self.first.perp(&offset) >= -border && offset.perp(&self.last) > border
+    }
+
+    /// The cell's distance from the sensor, if the beam covers it.
+    fn covers(&self, grid: &Grid, cell: Cell, reach: f64) -> Option<f64> {
+        let center = grid.center(cell);
+        let from_sensor = center - self.sensor;
+        let distance = from_sensor.norm();
+        let in_front = from_sensor.dot(&self.axis) > 0.0;
+        let covered = in_front
+            && distance <= reach
+            && (self.holds_bearing(center - self.apex)
+                || self.with_axis
+                    && self.axis_crosses(grid.lower_corner(cell), grid.resolution(), reach));
+        covered.then_some(distance)
+    }
+
+    /// Whether the axis, from the sensor to `reach`, passes through the square of side `r`
+    /// at `corner`.
+    fn axis_crosses(&self, corner: Point2<f64>, r: f64, reach: f64) -> bool {
+        let (mut enter, mut leave) = (0.0f64, reach);
+        for i in 0..2 {
+            let (start, slope) = (self.sensor[i], self.axis[i]);
+            let (a, b) = ((corner[i] - start) / slope, (corner[i] + r - start) / slope);
+            if slope.abs() < 1e-12 {
+                if start < corner[i] || start >= corner[i] + r {
+                    return false;
+                }
+            } else {
+                enter = enter.max(a.min(b));
+                leave = leave.min(a.max(b));
+            }
+        }
+        enter < leave
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use covmap_sonar::RingSpecification;
+    use proptest::prelude::*;
+
+    const B21R: FootprintRule =
+        FootprintRule::Sectors { half_angle: 7.5 * std::f64::consts::PI / 180.0 };
+
+    fn grid(cells: usize) -> Grid {
+        #[allow(clippy::cast_precision_loss, reason = "a small grid")]
+        let half = cells as f64 * 0.05;
+        Grid::new(Point2::new(-half, -half), 0.1, cells, cells).unwrap()
+    }
+
+    fn covered(
+        footprint: &Footprint,
+        grid: &Grid,
+        pose: &Isometry2<f64>,
+        beam: usize,
+        reach: f64,
+    ) -> Vec<FootprintCell> {
+        let mut cells = Vec::new();
+        footprint.for_each_cell(grid, pose, beam, reach, |cell| cells.push(cell));
+        cells
+    }
+
+    #[track_caller]
+    fn check(rule: FootprintRule, pose: Isometry2<f64>, reach: f64, expected: &str) {
+        let sensor = RingSpecification::Sensors(vec![covmap_sonar::SensorSpecification {
+            x: 0.0,
+            y: 0.0,
+            angle: 0.0,
+            half_angle: 0.1,
+            min_range: 0.0,
+            max_range: 9.0,
+        }]);
+        let ring = SonarRing::from_specification(&sensor).unwrap();
+        let grid = grid(12);
+        let cells = covered(&Footprint::new(&ring, &rule).unwrap(), &grid, &pose, 0, reach);
+        let picture = |y: i32| -> String {
+            let mark = |x| if cells.iter().any(|c| c.cell == Cell::new(x, y)) { '#' } else { '.' };
+            (0..12).map(mark).collect()
+        };
+        let drawn: Vec<String> = (0..12).rev().map(picture).collect();
+        let expected: Vec<&str> = expected.split_whitespace().collect();
+        assert_eq!(drawn, expected, "\n{}", drawn.join("\n"));
+    }
+
+    #[test]
+    fn a_lasers_line_covers_what_it_traverses() {
+        check(
+            FootprintRule::Cones { half_angle: 0.0 },
+            Isometry2::new(Vector2::new(-0.55, -0.55), 0.5),
+            1.0,
+            "............
+             ............
+             ............
+             ............
+             ............
+             ............
+             ........#...
+             ......###...
+             .....##.....
+             ...###......
+             .###........
+             .#..........",
+        );
+    }
+
+    #[test]
+    fn a_cone_covers_the_cells_within_its_angle() {
+        check(
+            FootprintRule::Cones { half_angle: 0.2618 },
+            Isometry2::new(Vector2::new(-0.55, 0.05), 0.0),
+            1.0,
+            "............
+             ............
+             ............
+             ........##..
+             ....######..
+             .##########.
+             ....######..
+             ........##..
+             ............
+             ............
+             ............
+             ............",
+        );
+    }
+
+    #[test]
+    fn two_sensors_that_look_the_same_way_have_no_sectors() {
+        let sensor = SonarRing::b21r().beams()[3];
+        let ring = SonarRing::new(vec![sensor, sensor]).unwrap();
+        assert!(matches!(Footprint::new(&ring, &B21R), Err(FootprintError::SameDirection(..))));
+        let wide = FootprintRule::Cones { half_angle: f64::NAN };
+        assert!(matches!(Footprint::new(&ring, &wide), Err(FootprintError::HalfAngle(_))));
+    }
+
+    proptest! {
+        #[test]
+        fn every_cell_around_the_robot_is_in_exactly_one_footprint(
+            x in -0.05..0.05f64, y in -0.05..0.05f64, quarter in 0..4i32, turn in prop::option::of(0.0..6.3f64)
+        ) {
+            let footprint = Footprint::new(&SonarRing::b21r(), &B21R).unwrap();
+            let heading = turn.unwrap_or(f64::from(quarter) * std::f64::consts::FRAC_PI_2);
+            let (x, y) = if turn.is_none() { (0.05, 0.05) } else { (x, y) };
+            let grid = grid(70);
+            let mut times = vec![0; grid.len()];
+            let pose = Isometry2::new(Vector2::new(x, y), heading);
+            for beam in 0..24 {
+                for c in covered(&footprint, &grid, &pose, beam, 3.0) {
+                    times[grid.index(c.cell).unwrap()] += 1;
+                }
+            }
+            for cell in grid.cells() {
+                let distance = (grid.center(cell) - Point2::new(x, y)).norm();
+                if (0.35..3.0).contains(&distance) {
+                    prop_assert_eq!(times[grid.index(cell).unwrap()], 1, "{:?}", cell);
+                }
+            }
+        }
+
+        #[test]
+        fn the_traversal_misses_no_cell(
+            x in -2.0..2.0f64, y in -2.0..2.0f64, heading in -7.0..7.0f64,
+            reach in 0.0..5.0f64, half_angle in prop::sample::select(vec![0.0, 0.01, 0.13, 0.26, 1.4]),
+            sectors in any::<bool>(), beam in 0..24usize
+        ) {
+            let rule = if sectors { B21R } else { FootprintRule::Cones { half_angle } };
+            let footprint = Footprint::new(&SonarRing::b21r(), &rule).unwrap();
+            let (grid, pose) = (grid(50), Isometry2::new(Vector2::new(x, y), heading));
+            let sector = footprint.sectors[beam].moved(&pose);
+            let all: Vec<FootprintCell> = grid.cells().filter_map(|cell| {
+                sector.covers(&grid, cell, reach).map(|cell_distance| FootprintCell { cell, cell_distance })
+            }).collect();
+            prop_assert_eq!(covered(&footprint, &grid, &pose, beam, reach), all);
+        }
+    }
+}
