@@ -1,0 +1,137 @@
+//! Eq. (14) as it runs: one logarithm for each (cell, d), and many cells side by side.
+//!
+//! With u = h·log h of the stored histogram and v = t·log t of the evidence, the entropy of
+//! the normalised product h·t/Z is
+//!
+//! ```text
+//! H' = log Z − (Σ u·t + Σ h·v)/Z,   Z = Σ h·t
+//! ```
+//!
+//! so that no product is normalised and nothing is copied but the histograms of one beam.
+
+use super::logarithm::{LANES, Lanes, ln};
+use super::tables::{GainTables, OutcomeRows};
+use crate::cells::{Cells, Offsets};
+use crate::{RangeLikelihood, Stencil};
+use covmap_model::SensorModel;
+
+/// Outcomes less likely than this are left out. One outcome gains or loses less than ln n in
+/// each of the beam's cells, so all of them together change a beam's E[I] by less than
+/// (K + 2) · cells · ln n times this: some 1e-8 nats for a sonar.
+const NEGLIGIBLE: f64 = 1e-10;
+
+/// The histograms of one beam's cells, block by block.
+#[derive(Debug, Default)]
+pub(crate) struct Scratch {
+    pub(crate) likelihood: RangeLikelihood,
+    h: Vec<Lanes>,
+    u: Vec<Lanes>,
+    entropy: Vec<Lanes>,
+    /// 1 for a cell that a measurement can change, else 0.
+    changeable: Vec<Lanes>,
+}
+
+/// Evaluates E[I] of single beams.
+#[derive(Debug, Clone)]
+pub(crate) struct FastGain {
+    tables: GainTables,
+    outcomes: usize,
+    arch: pulp::Arch,
+}
+
+impl FastGain {
+    pub(crate) fn new(model: &SensorModel, stencil: &Stencil) -> Self {
+        let tables = GainTables::new(model, stencil);
+        Self { tables, outcomes: stencil.outcomes(), arch: pulp::Arch::new() }
+    }
+
+    /// E[I] of a beam from the view-point with a row-major index, given its range likelihood
+    /// in `scratch`.
+    pub(crate) fn beam_gain(
+        &self,
+        cells: &Cells,
+        offsets: &Offsets,
+        beam: usize,
+        view_point: usize,
+        scratch: &mut Scratch,
+    ) -> f64 {
+        let likely = |k: &usize| scratch.likelihood.probability(*k) > NEGLIGIBLE;
+        let reach = |k| self.tables.rows(beam, k).covered;
+        let Some(farthest) = (0..self.outcomes).filter(likely).map(reach).max() else { return 0.0 };
+        scratch.gather(cells, offsets, view_point, farthest);
+        let mut expected = 0.0;
+        for k in (0..self.outcomes).filter(|k| scratch.likelihood.probability(*k) > NEGLIGIBLE) {
+            let rows = self.tables.rows(beam, k);
+            let gain = self.arch.dispatch(
+                #[inline(always)]
+                || scratch.outcome_gain(rows, cells.bins()),
+            );
+            expected += scratch.likelihood.probability(k) * gain;
+        }
+        expected
+    }
+}
+
+impl Scratch {
+    /// Copies the histograms of the first `count` cells of a beam, transposed.
+    fn gather(&mut self, cells: &Cells, offsets: &Offsets, view_point: usize, count: usize) {
+        let (bins, blocks) = (cells.bins(), count.div_ceil(LANES));
+        let nothing = [0.0; LANES];
+        for (lanes, length) in [
+            (&mut self.h, blocks * bins),
+            (&mut self.u, blocks * bins),
+            (&mut self.entropy, blocks),
+            (&mut self.changeable, blocks),
+        ] {
+            lanes.resize(length.max(lanes.len()), nothing);
+        }
+        let bordered = cells.bordered(view_point);
+        for i in 0..blocks * LANES {
+            let (block, lane) = (i / LANES, i % LANES);
+            let changeable =
+                i < count && cells.is_changeable(bordered.wrapping_add_signed(offsets.bordered[i]));
+            self.changeable[block][lane] = f32::from(changeable);
+            if changeable {
+                let index = view_point.wrapping_add_signed(offsets.plain[i]);
+                let (h, u) = cells.row(index);
+                self.entropy[block][lane] = cells.entropy(index);
+                for bin in 0..bins {
+                    self.h[block * bins + bin][lane] = h[bin];
+                    self.u[block * bins + bin][lane] = u[bin];
+                }
+            } else {
+                // Any histogram will do, as long as its numbers are tame.
+                (0..bins).for_each(|bin| self.h[block * bins + bin][lane] = 1.0);
+                (0..bins).for_each(|bin| self.u[block * bins + bin][lane] = 0.0);
+                self.entropy[block][lane] = 0.0;
+            }
+        }
+    }
+
+    /// Σ I(h(c_i) | d) over the cells of one outcome.
+    #[inline(always)]
+    fn outcome_gain(&self, rows: &OutcomeRows, bins: usize) -> f64 {
+        let mut sum = [0.0f32; LANES];
+        let blocks = rows.covered.div_ceil(LANES);
+        for block in 0..blocks {
+            let range = block * bins..(block + 1) * bins;
+            let (mut z, mut s) = ([0.0f32; LANES], [0.0f32; LANES]);
+            let posterior = self.h[range.clone()].iter().zip(&self.u[range.clone()]);
+            for ((h, u), (t, v)) in posterior.zip(rows.t[range.clone()].iter().zip(&rows.v[range]))
+            {
+                for lane in 0..LANES {
+                    z[lane] += h[lane] * t[lane];
+                    s[lane] += u[lane] * t[lane] + h[lane] * v[lane];
+                }
+            }
+            let log_z = ln(&z);
+            let covered = rows.covered - block * LANES;
+            for lane in 0..LANES {
+                let after = log_z[lane] - s[lane] / z[lane];
+                let counts = if lane < covered { self.changeable[block][lane] } else { 0.0 };
+                sum[lane] += counts * (self.entropy[block][lane] - after);
+            }
+        }
+        sum.iter().map(|g| f64::from(*g)).sum()
+    }
+}

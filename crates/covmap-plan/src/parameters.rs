@@ -1,0 +1,134 @@
+//! The parameters of planning.
+
+use crate::{Strategy, StrategyError};
+use serde::{Deserialize, Serialize};
+
+/// When a cell is given up whose entropy does not fall any longer.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum StallRule {
+    /// Ours: the lowest entropy within a distance band must fall. When it stalls, only scans
+    /// from half the distance count; below `closest` \[m\] the cell is exhausted. A cell at a
+    /// border jitters between two bins for ever, and looks from afar say little: with bands
+    /// runs end, provably, and no cell is given up for having been looked at from afar.
+    Banded {
+        /// The distance below which there is no further band \[m\].
+        closest: f64,
+    },
+    /// As `Banded`, but the first stall exhausts the cell.
+    Unbanded,
+    /// The paper's words: the change of entropy is below the limit for five consecutive
+    /// measurements. It ends by the cap on counted scans only.
+    Literal,
+}
+
+/// Which cells must be explored.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Scope {
+    /// All that can be seen from where the robot can stand: walls, too.
+    Observable,
+    /// Only those where the robot can stand, or might: the paper's words.
+    Reachable,
+}
+
+/// What is made of the fact that the robot's body fits where it stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum BodyEvidence {
+    /// Nothing.
+    Off,
+    /// A view-point that the robot stood on stays traversable.
+    PlannerOnly,
+    /// Also, cells entirely under the body are free in the map.
+    Belief,
+}
+
+/// The parameters of the planner.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PlannerParameters {
+    /// How the next view-point is chosen.
+    pub strategy: Strategy,
+    /// ε: a cell with an entropy up to this is explored \[nats\].
+    pub entropy_threshold: f64,
+    /// A smaller fall of a cell's entropy is a stall \[nats\]: the paper's .001.
+    pub min_entropy_change: f64,
+    /// Stalls in a row after which a cell is given up: the paper's five.
+    pub stall_limit: u32,
+    /// When a cell is given up.
+    pub stall_rule: StallRule,
+    /// A practical cap on the scans counted for one cell; reported whenever it fires.
+    pub max_counted_scans: u32,
+    /// Which cells must be explored.
+    pub scope: Scope,
+    /// The largest most likely coverage of a cell that the robot may drive over.
+    pub traversable_coverage: f64,
+    /// c_u: how much an unknown cell reflects when ranges are predicted.
+    pub unknown_reflection: f64,
+    /// η: share of every predicted range's probability that is spread over all ranges.
+    pub uniform_share: f64,
+    /// What is made of where the robot's body was.
+    pub body_evidence: BodyEvidence,
+}
+
+/// Why parameters make no planner.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum PlannerError {
+    /// A parameter is not in its interval.
+    #[error("planner.{name}: {value} must lie in [{min}, {max}]")]
+    OutOfRange {
+        /// The parameter.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// Smallest allowed value.
+        min: f64,
+        /// Largest allowed value.
+        max: f64,
+    },
+    /// A beam covers more cells than the planner can number.
+    #[error(
+        "a beam covers {0} cells, 65535 are too many: use a coarser resolution, a shorter usable range or a narrower footprint"
+    )]
+    BeamTooFine(usize),
+    /// The strategy has an impossible number.
+    #[error("planner.strategy: {0}")]
+    Strategy(#[from] StrategyError),
+}
+
+impl PlannerParameters {
+    /// The defaults of readings: ε = .6, .001, five; walls are targets; IG_CL(.3).
+    pub fn standard() -> Self {
+        Self {
+            strategy: Strategy::IgCl { alpha: 0.3 },
+            entropy_threshold: 0.6,
+            min_entropy_change: 0.001,
+            stall_limit: 5,
+            stall_rule: StallRule::Banded { closest: 0.5 },
+            max_counted_scans: 520,
+            scope: Scope::Observable,
+            traversable_coverage: 0.2,
+            unknown_reflection: 0.0,
+            uniform_share: 0.0,
+            body_evidence: BodyEvidence::Belief,
+        }
+    }
+
+    /// Checks every parameter.
+    pub(crate) fn validate(&self) -> Result<(), PlannerError> {
+        let within = |name, value: f64, min, max| {
+            let good = (min..=max).contains(&value);
+            good.then_some(()).ok_or(PlannerError::OutOfRange { name, value, min, max })
+        };
+        self.strategy.validate()?;
+        within("entropy_threshold", self.entropy_threshold, 0.0, 5.0)?;
+        within("min_entropy_change", self.min_entropy_change, 1e-6, 1.0)?;
+        within("stall_limit", f64::from(self.stall_limit), 1.0, 1000.0)?;
+        if let StallRule::Banded { closest } = self.stall_rule {
+            within("stall_rule.closest", closest, 1e-2, 100.0)?;
+        }
+        within("max_counted_scans", f64::from(self.max_counted_scans), 1.0, 1e6)?;
+        within("traversable_coverage", self.traversable_coverage, 0.0, 0.999)?;
+        within("unknown_reflection", self.unknown_reflection, 0.0, 1.0)?;
+        within("uniform_share", self.uniform_share, 0.0, 1.0)
+    }
+}

@@ -1,0 +1,451 @@
+//! The planner: one owner of what is explored, what stalls, and what was computed before.
+
+use crate::beam_cache::BeamCache;
+use crate::cells::Cells;
+use crate::decision::{Score, best};
+use crate::exploration::{CountedScan, Exploration};
+use crate::traversable::Traversable;
+use crate::window::Window;
+use crate::{
+    BodyEvidence, CandidateRecord, CellStatus, Decision, PlannerError, PlannerParameters, Scope,
+    Stencil, Strategy, TravelCosts, expected_information_gain, travel_costs,
+};
+use covmap::{Cell, Change, CoverageMap, Grid, Raster};
+use covmap_model::{SensorModel, intercepted};
+use covmap_sonar::Scan;
+
+/// The fast evaluation of E[I] is within this of the literal one, in units of the largest
+/// absolute gain of the decision; candidates closer to the best are decided by the latter.
+pub const GAIN_TOLERANCE: f64 = 1e-5;
+/// How many candidates a decision reports.
+const REPORTED: usize = 5;
+
+/// Chooses view-points by the strategies of section 4, and knows when all is explored.
+///
+/// Tell it of everything that happens ([`observe`], [`body_moved`], [`stand_on`],
+/// [`bump_at`]), then ask it to [`choose`].
+///
+/// [`observe`]: Planner::observe
+/// [`body_moved`]: Planner::body_moved
+/// [`stand_on`]: Planner::stand_on
+/// [`bump_at`]: Planner::bump_at
+/// [`choose`]: Planner::choose
+#[derive(Debug, Clone)]
+pub struct Planner {
+    parameters: PlannerParameters,
+    model: SensorModel,
+    stencil: Stencil,
+    grid: Grid,
+    cells: Cells,
+    traversable: Traversable,
+    exploration: Exploration,
+    beams: BeamCache,
+    window: Option<Window>,
+    /// The chosen view-point, and what was in sight of it when it was chosen.
+    target: Option<(Cell, Vec<(usize, f32)>)>,
+}
+
+/// L(c): the candidates, with the way to each.
+struct Candidates {
+    indices: Vec<usize>,
+    costs: TravelCosts,
+}
+
+impl Planner {
+    /// A planner that knows nothing yet.
+    ///
+    /// `outside` tells the cells outside the extent of the environment, which need not be
+    /// explored; `radius` is the robot's \[m\], `heading` the direction that its ring keeps
+    /// \[rad\].
+    ///
+    /// # Errors
+    /// If a parameter is out of its interval.
+    pub fn new(
+        parameters: &PlannerParameters,
+        model: &SensorModel,
+        outside: &Raster<bool>,
+        radius: f64,
+        heading: f64,
+    ) -> Result<Self, PlannerError> {
+        parameters.validate()?;
+        let stencil = Stencil::new(model, heading);
+        let most = stencil.beams.iter().map(|b| b.cells.len()).max().unwrap_or(0);
+        if most >= usize::from(u16::MAX) {
+            return Err(PlannerError::BeamTooFine(most));
+        }
+        let grid = *outside.grid();
+        let bins = model.parameters().bins;
+        let cells = Cells::new(grid, bins, &stencil, parameters);
+        let beams = BeamCache::new(model, &stencil, &cells, grid, parameters);
+        let window = match parameters.strategy {
+            Strategy::IgWin { radius } => Some(Window::new(grid, radius)),
+            _ => None,
+        };
+        let usable_range = model.parameters().usable_range;
+        let mut planner = Self {
+            exploration: Exploration::new(parameters, usable_range, outside),
+            traversable: Traversable::new(grid, radius),
+            parameters: parameters.clone(),
+            model: model.clone(),
+            stencil,
+            grid,
+            cells,
+            beams,
+            window,
+            target: None,
+        };
+        if let Ok(unknown) = CoverageMap::new(grid, bins) {
+            (0..grid.len()).for_each(|index| planner.update_limit(&unknown, index));
+        }
+        Ok(planner)
+    }
+
+    /// Takes note of a scan that was integrated, and of what it changed.
+    ///
+    /// The scan counts for the unfinished cells that it should have seen: V(l) before it, of
+    /// the view-point whose cell holds its pose; for the chosen view-point, V(l) as it was
+    /// when it was chosen.
+    pub fn observe(&mut self, map: &CoverageMap, scan: &Scan, changes: &[Change]) {
+        let at = self.grid.cell_at(scan.pose.translation.vector.into());
+        let in_sight = match (self.target.take(), at) {
+            (Some((target, in_sight)), Some(at)) if target == at => in_sight,
+            (target, at) => {
+                self.target = target;
+                at.map_or_else(Vec::new, |at| self.cells_in_sight(at))
+            }
+        };
+        let expected: Vec<CountedScan> = in_sight
+            .iter()
+            .filter(|(index, distance)| *distance <= self.cells.limit(self.cells.bordered(*index)))
+            .map(|&(index, distance)| {
+                let before = self.cells.entropy(index);
+                CountedScan { index, distance, before, after: before }
+            })
+            .collect();
+        let weights: Vec<f64> = expected.iter().map(|s| self.exploration.weight(s.index)).collect();
+        self.exploration.add_counts(|| intercepted(&self.model, &self.grid, scan));
+        self.take_over(map, changes);
+        for (scan, weight) in expected.into_iter().zip(weights) {
+            let touched = self.exploration.weight(scan.index) > weight;
+            let after = self.cells.entropy(scan.index);
+            self.exploration.count(CountedScan { after, ..scan }, touched);
+            self.update_limit(map, scan.index);
+        }
+        if self.parameters.strategy.counting().is_some() {
+            (0..self.grid.len()).for_each(|index| self.update_limit(map, index));
+        }
+    }
+
+    /// Takes note of what the robot's body told about the map.
+    pub fn body_moved(&mut self, map: &CoverageMap, changes: &[Change]) {
+        self.take_over(map, changes);
+    }
+
+    /// Takes note that the robot stands in a cell: it can stand there again.
+    pub fn stand_on(&mut self, cell: Cell) {
+        if self.parameters.body_evidence != BodyEvidence::Off {
+            self.traversable.stand_on(cell);
+        }
+    }
+
+    /// Takes note that the robot bumped into something when it entered a cell: it is blocked
+    /// for good.
+    pub fn bump_at(&mut self, cell: Cell) {
+        self.traversable.bump_at(cell);
+        self.target = None;
+    }
+
+    fn take_over(&mut self, map: &CoverageMap, changes: &[Change]) {
+        let with_gain = self.parameters.strategy.uses_gain();
+        for change in changes {
+            let Some(index) = self.grid.index(change.cell) else { continue };
+            let reflects_anew = self.cells.update(map, change.cell);
+            if reflects_anew {
+                let known = map.is_known(change.cell);
+                let free = map.mode(change.cell) <= self.parameters.traversable_coverage + 1e-9;
+                let mut opened_or_closed = Vec::new();
+                self.traversable.update(index, known.then_some(free), |i| opened_or_closed.push(i));
+                if self.parameters.scope == Scope::Reachable {
+                    opened_or_closed.into_iter().for_each(|i| self.update_limit(map, i));
+                }
+            }
+            if with_gain || reflects_anew {
+                self.beams.mark(change.cell, with_gain, reflects_anew);
+            }
+            self.update_limit(map, index);
+        }
+    }
+
+    /// Sets up to which distance a cell is a reason to measure.
+    fn update_limit(&mut self, map: &CoverageMap, index: usize) {
+        let cell = self.grid.cell(index);
+        let known = map.is_known(cell);
+        let in_scope = match self.parameters.scope {
+            Scope::Observable => true,
+            Scope::Reachable => !known || self.traversable.at(index),
+        };
+        let is_closed = self.window.as_ref().is_some_and(|w| w.is_closed(index));
+        let limit = if in_scope && !is_closed {
+            self.exploration.limit(index, known, map.entropy(cell))
+        } else {
+            0.0
+        };
+        if self.cells.set_limit(index, limit) {
+            self.beams.mark(cell, false, true);
+        }
+    }
+
+    /// V(l): the cells in sight of a view-point, by their row-major index, with their
+    /// distance from the sensor \[m\]: those in the footprint of some beam's outcome with a
+    /// total probability of at least ½.
+    pub fn cells_in_sight(&mut self, view_point: Cell) -> Vec<(usize, f32)> {
+        let Some(index) = self.grid.index(view_point) else { return Vec::new() };
+        let mut wanted = vec![false; self.grid.len()];
+        wanted[index] = true;
+        self.beams.refresh(&self.cells, &wanted, false);
+        self.beams.cells_in_sight(index)
+    }
+
+    /// L(c) and the ways there, for a robot in the cell `from`.
+    fn candidates(&mut self, from: Cell) -> Candidates {
+        let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
+        let mut reachable = vec![false; self.grid.len()];
+        costs.reached().for_each(|index| reachable[index] = true);
+        self.beams.refresh(&self.cells, &reachable, false);
+        let is_candidate = |i: &usize| reachable[*i] && self.beams.has_reason(*i);
+        Candidates { indices: (0..self.grid.len()).filter(is_candidate).collect(), costs }
+    }
+
+    /// The candidates with their costs and, if asked, their gains; scores are not filled in.
+    fn records(&mut self, candidates: &Candidates, with_gain: bool) -> Vec<CandidateRecord> {
+        if with_gain {
+            let mut wanted = vec![false; self.grid.len()];
+            candidates.indices.iter().for_each(|i| wanted[*i] = true);
+            self.beams.refresh(&self.cells, &wanted, true);
+        }
+        let record = |&index: &usize| CandidateRecord {
+            cell: self.grid.cell(index),
+            gain: if with_gain { self.beams.gain(index) } else { 0.0 },
+            cost: candidates.costs.cost(index).unwrap_or(f64::INFINITY),
+            gain_term: 0.0,
+            cost_term: 0.0,
+            score: 0.0,
+        };
+        candidates.indices.iter().map(record).collect()
+    }
+
+    /// Every candidate for a robot in the cell `from`, with gains and scores, in row-major
+    /// order: what the next decision is made from. For IG_WIN those of the whole map.
+    pub fn candidate_table(&mut self, from: Cell) -> Vec<CandidateRecord> {
+        let candidates = self.candidates(from);
+        let mut records = self.records(&candidates, true);
+        self.score().apply(&mut records);
+        records
+    }
+
+    fn score(&self) -> Score {
+        match self.parameters.strategy {
+            Strategy::Cl | Strategy::Count { .. } => Score::Closest,
+            Strategy::Ig | Strategy::IgWin { .. } => Score::Gain,
+            Strategy::IgCl { alpha } => Score::Weighted(alpha),
+        }
+    }
+
+    /// Chooses the next view-point for a robot in the cell `from`; `None` if there is no
+    /// candidate: nothing is open.
+    pub fn choose(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
+        let candidates = self.windowed_candidates(map, from)?;
+        let with_gain = self.parameters.strategy.uses_gain();
+        let mut records = self.records(&candidates, with_gain);
+        let score = self.score();
+        score.apply(&mut records);
+        let decided_by_oracle = if with_gain { self.decide_ties(map, &mut records) } else { 0 };
+        let target = records[best(&records)?].cell;
+        let negative_gains = records.iter().filter(|r| r.gain < 0.0).count();
+        let best = self.report(records, with_gain);
+        let path = candidates.costs.path_to(target)?;
+        let candidates = candidates.indices.len();
+        self.target = Some((target, self.cells_in_sight(target)));
+        Some(Decision { target, path, candidates, negative_gains, decided_by_oracle, best })
+    }
+
+    /// The five best candidates; where gains were not needed they are computed for these.
+    fn report(
+        &mut self,
+        mut records: Vec<CandidateRecord>,
+        with_gain: bool,
+    ) -> Vec<CandidateRecord> {
+        let max_cost_term = |r: &CandidateRecord| r.cost_term;
+        records.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell)));
+        records.truncate(REPORTED);
+        if !with_gain {
+            let mut wanted = vec![false; self.grid.len()];
+            let index = |r: &CandidateRecord| self.grid.index(r.cell).unwrap_or(0);
+            records.iter().for_each(|r| wanted[index(r)] = true);
+            self.beams.refresh(&self.cells, &wanted, true);
+            let costs: Vec<f64> = records.iter().map(max_cost_term).collect();
+            records.iter_mut().for_each(|r| r.gain = self.beams.gain(index(r)));
+            self.score().apply(&mut records);
+            records.iter_mut().zip(costs).for_each(|(r, cost_term)| r.cost_term = cost_term);
+        }
+        records
+    }
+
+    /// Replaces the gains that could decide by those of the literal equations, and scores
+    /// anew. Returns how many there were, where there was more than one.
+    fn decide_ties(&self, map: &CoverageMap, records: &mut [CandidateRecord]) -> usize {
+        let score = self.score();
+        let doubt = 2.0 * score.uncertainty(records, GAIN_TOLERANCE);
+        let top = |f: fn(&CandidateRecord) -> f64, records: &[CandidateRecord]| {
+            records.iter().map(f).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let best_score = top(|r| r.score, records);
+        let contenders: Vec<usize> =
+            (0..records.len()).filter(|i| records[*i].score >= best_score - doubt).collect();
+        if contenders.len() < 2 {
+            return 0;
+        }
+        // Eq. (16) divides by the largest gain, so that one must be exact as well.
+        let largest = records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
+        let max_gain = top(|r| r.gain, records);
+        let near_max = |r: &CandidateRecord| r.gain >= max_gain - 2.0 * GAIN_TOLERANCE * largest;
+        for i in 0..records.len() {
+            if contenders.contains(&i) || near_max(&records[i]) {
+                let cell = records[i].cell;
+                records[i].gain = expected_information_gain(
+                    map,
+                    &self.model,
+                    &self.stencil,
+                    &self.parameters,
+                    cell,
+                );
+            }
+        }
+        score.apply(records);
+        contenders.len()
+    }
+
+    /// The candidates; for IG_WIN those inside the window, which is opened and closed here.
+    fn windowed_candidates(&mut self, map: &CoverageMap, from: Cell) -> Option<Candidates> {
+        if self.window.as_ref().is_some_and(|w| w.center().is_none()) {
+            self.open_window(from);
+        }
+        loop {
+            let mut candidates = self.candidates(from);
+            let Some(window) = &mut self.window else {
+                return (!candidates.indices.is_empty()).then_some(candidates);
+            };
+            if candidates.indices.is_empty() {
+                let reopened = window.reopen_all();
+                if reopened.is_empty() {
+                    return None;
+                }
+                reopened.into_iter().for_each(|index| self.update_limit(map, index));
+                continue;
+            }
+            let inside: Vec<usize> =
+                candidates.indices.iter().copied().filter(|i| self.window_offers(*i)).collect();
+            if !inside.is_empty() {
+                candidates.indices = inside;
+                return Some(candidates);
+            }
+            self.close_window(map);
+            let mut left = self.candidates(from);
+            let nearest = left.costs.reached().find(|i| left.indices.contains(i));
+            if let Some(nearest) = nearest {
+                self.open_window(self.grid.cell(nearest));
+                if !left.indices.iter().any(|i| self.window_offers(*i)) {
+                    // All that the nearest candidate sees lies outside of its window.
+                    left.indices = vec![nearest];
+                    return Some(left);
+                }
+            }
+        }
+    }
+
+    fn open_window(&mut self, center: Cell) {
+        if let Some(window) = &mut self.window {
+            window.open(center);
+        }
+    }
+
+    fn close_window(&mut self, map: &CoverageMap) {
+        let closed = self.window.as_mut().map_or_else(Vec::new, Window::close);
+        closed.into_iter().for_each(|index| self.update_limit(map, index));
+    }
+
+    /// Whether a candidate lies in the window and holds an open cell of it in sight.
+    fn window_offers(&self, candidate: usize) -> bool {
+        let Some(window) = &self.window else { return true };
+        let is_open = |&(index, distance): &(usize, f32)| {
+            window.holds(index) && distance <= self.cells.limit(self.cells.bordered(index))
+        };
+        window.holds(candidate) && self.beams.cells_in_sight(candidate).iter().any(is_open)
+    }
+
+    /// What became of every cell, for a robot in the cell `from`: explored means that none
+    /// is [`CellStatus::Open`].
+    pub fn certificate(&mut self, map: &CoverageMap, from: Cell) -> Raster<CellStatus> {
+        let mut in_sight = vec![false; self.grid.len()];
+        for candidate in self.candidates(from).indices {
+            for (index, distance) in self.beams.cells_in_sight(candidate) {
+                in_sight[index] |= distance <= self.cells.limit(self.cells.bordered(index));
+            }
+        }
+        Raster::from_fn(self.grid, |cell| {
+            let index = self.grid.index(cell).unwrap_or(0);
+            let (known, entropy) = (map.is_known(cell), map.entropy(cell));
+            self.exploration.status(index, known, entropy, in_sight[index])
+        })
+    }
+
+    /// The share of cells that are finished among those that are known or finished; cheap,
+    /// for progress.
+    pub fn share_finished(&self, map: &CoverageMap) -> f64 {
+        let status = |index: usize| {
+            let cell = self.grid.cell(index);
+            self.exploration.status(index, map.is_known(cell), map.entropy(cell), true)
+        };
+        let count = |wanted: fn(CellStatus) -> bool| {
+            (0..self.grid.len())
+                .filter(|i| map.is_known(self.grid.cell(*i)) && wanted(status(*i)))
+                .count()
+        };
+        let (finished, open) = (
+            count(|s| matches!(s, CellStatus::Resolved | CellStatus::Exhausted)),
+            count(|s| s == CellStatus::Open),
+        );
+        #[allow(clippy::cast_precision_loss, reason = "a share of at most 2e7 cells")]
+        let share = finished as f64 / (finished + open).max(1) as f64;
+        share
+    }
+
+    /// How many cells were given up by the cap on counted scans.
+    pub fn capped_cells(&self) -> usize {
+        self.exploration.capped_cells()
+    }
+
+    /// How many scans were counted for each cell.
+    pub fn counted_scans(&self) -> Raster<u32> {
+        self.exploration.counted_scans(self.grid)
+    }
+
+    /// Whether the robot can reach any view-point but the cell that it is in.
+    pub fn can_move(&self, from: Cell) -> bool {
+        let near = |(dx, dy)| self.grid.index(from.offset(dx, dy));
+        [(1, 0), (-1, 0), (0, 1), (0, -1)]
+            .into_iter()
+            .filter_map(near)
+            .any(|i| self.traversable.at(i))
+    }
+
+    /// The cells around a view-point, as the planner's beams see them.
+    pub fn stencil(&self) -> &Stencil {
+        &self.stencil
+    }
+
+    /// The parameters.
+    pub fn parameters(&self) -> &PlannerParameters {
+        &self.parameters
+    }
+}

@@ -1,0 +1,177 @@
+//! The strategies of section 4, by name.
+
+use covmap_model::Counting;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+use std::str::FromStr;
+
+/// How the next view-point is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Strategy {
+    /// The closest location, Eq. (12).
+    Cl,
+    /// The largest expected information gain, Eq. (15).
+    Ig,
+    /// The largest gain within a local window until that is explored (section 4.2).
+    IgWin {
+        /// Radius of the window \[m\].
+        radius: f64,
+    },
+    /// Gain against travel cost, Eq. (16).
+    IgCl {
+        /// Weight of the gain.
+        alpha: f64,
+    },
+    /// The closest location at which a cell can be scanned that was not scanned `times`
+    /// times yet (section 5.1); no entropy is read.
+    Count {
+        /// How often each cell must be scanned.
+        times: f64,
+        /// Distance at which a beam counts half \[m\]; none counts every beam fully.
+        half_distance: Option<f64>,
+    },
+}
+
+impl Strategy {
+    /// Whether the choice depends on the expected information gain.
+    pub fn uses_gain(&self) -> bool {
+        matches!(self, Strategy::Ig | Strategy::IgWin { .. } | Strategy::IgCl { .. })
+    }
+
+    /// How scans are counted, and up to which weight, if this strategy counts.
+    pub fn counting(&self) -> Option<(Counting, f64)> {
+        let Strategy::Count { times, half_distance } = *self else { return None };
+        let counting = half_distance
+            .map_or(Counting::Plain, |half_distance| Counting::Discounted { half_distance });
+        Some((counting, times))
+    }
+
+    /// A short name for files: letters, digits, dots and hyphens.
+    pub fn file_name(&self) -> String {
+        match self {
+            Strategy::Cl => "CL".into(),
+            Strategy::Ig => "IG".into(),
+            Strategy::IgWin { radius } => format!("IG_WIN-{radius}"),
+            Strategy::IgCl { alpha } => format!("IG_CL-{alpha}"),
+            Strategy::Count { times, half_distance: None } => format!("COUNT-{times}"),
+            Strategy::Count { times, half_distance: Some(d) } => format!("COUNT-{times}-{d}"),
+        }
+    }
+
+    /// Checks the numbers.
+    ///
+    /// # Errors
+    /// If a number is not finite or out of its range.
+    pub fn validate(&self) -> Result<(), StrategyError> {
+        let number = |name: &'static str, value: f64, min: f64| {
+            let good = value.is_finite() && value >= min;
+            good.then_some(()).ok_or(StrategyError::Number { name, value, min })
+        };
+        match *self {
+            Strategy::Cl | Strategy::Ig => Ok(()),
+            Strategy::IgWin { radius } => number("the radius of IG_WIN", radius, 0.1),
+            Strategy::IgCl { alpha } => number("the weight α of IG_CL", alpha, 0.0),
+            Strategy::Count { times, half_distance } => {
+                number("the count of COUNT", times, 1e-3)?;
+                number("the half distance of COUNT", half_distance.unwrap_or(1.0), 1e-3)
+            }
+        }
+    }
+}
+
+/// Why a text names no strategy.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum StrategyError {
+    /// Not one of the names, or the wrong number of parameters.
+    #[error(
+        "`{0}` is no strategy: use CL, IG, IG_WIN:RADIUS, IG_CL:ALPHA, COUNT:N or COUNT:N:D0, as in IG_CL:0.3"
+    )]
+    Unknown(String),
+    /// A number out of range.
+    #[error("{name} is {value}; it must be a finite number of at least {min}")]
+    Number {
+        /// Which.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// The smallest allowed.
+        min: f64,
+    },
+}
+
+impl FromStr for Strategy {
+    type Err = StrategyError;
+
+    fn from_str(text: &str) -> Result<Self, StrategyError> {
+        let unknown = || StrategyError::Unknown(text.to_owned());
+        let mut parts = text.split(':');
+        let name = parts.next().unwrap_or_default().to_ascii_uppercase();
+        let numbers: Vec<f64> =
+            parts.map(str::parse).collect::<Result<_, _>>().map_err(|_| unknown())?;
+        let strategy = match (name.as_str(), numbers.as_slice()) {
+            ("CL", []) => Strategy::Cl,
+            ("IG", []) => Strategy::Ig,
+            ("IG_WIN", &[radius]) => Strategy::IgWin { radius },
+            ("IG_CL", &[alpha]) => Strategy::IgCl { alpha },
+            ("COUNT", &[times]) => Strategy::Count { times, half_distance: None },
+            ("COUNT", &[times, d0]) => Strategy::Count { times, half_distance: Some(d0) },
+            _ => return Err(unknown()),
+        };
+        strategy.validate()?;
+        Ok(strategy)
+    }
+}
+
+/// A number as the paper prints it: `.3`, `1.0`.
+fn as_printed(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_prefix("0.").map_or_else(|| text.clone(), |digits| format!(".{digits}"))
+}
+
+impl fmt::Display for Strategy {
+    /// As in Fig. 7 of the paper: `IG_CL(.3)`.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Strategy::Cl => write!(f, "CL"),
+            Strategy::Ig => write!(f, "IG"),
+            Strategy::IgWin { radius } => write!(f, "IG_WIN({})", as_printed(*radius)),
+            Strategy::IgCl { alpha } => write!(f, "IG_CL({})", as_printed(*alpha)),
+            Strategy::Count { times, half_distance: None } => write!(f, "COUNT({times})"),
+            Strategy::Count { times, half_distance: Some(d) } => write!(f, "COUNT({times}, {d})"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn strategies_are_printed_as_in_figure_7() {
+        let print = |text: &str| text.parse::<Strategy>().unwrap().to_string();
+        assert_eq!(print("cl"), "CL");
+        assert_eq!(print("IG_CL:0.3"), "IG_CL(.3)");
+        assert_eq!(print("IG_CL:1"), "IG_CL(1.0)");
+        assert_eq!(print("IG_CL:0"), "IG_CL(.0)");
+        assert_eq!(print("IG_WIN:2"), "IG_WIN(2.0)");
+        assert_eq!(print("COUNT:50:2"), "COUNT(50, 2)");
+    }
+
+    #[test]
+    fn what_is_no_strategy_is_refused() {
+        for text in [
+            "",
+            "FBE",
+            "IG:1",
+            "IG_CL",
+            "IG_CL:x",
+            "IG_CL:-1",
+            "IG_WIN:0",
+            "COUNT:nan",
+            "COUNT:1:2:3",
+        ] {
+            assert!(text.parse::<Strategy>().is_err(), "{text}");
+        }
+    }
+}

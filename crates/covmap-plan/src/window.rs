@@ -1,0 +1,63 @@
+//! The local window of IG_WIN.
+
+use covmap::{Cell, Grid};
+
+/// "A local window until this has been explored … no need for the robot to return."
+///
+/// Reading: a circle around where it was opened. It is done when no candidate inside holds
+/// an open cell inside in sight; then its cells are no reasons any more, and the next window
+/// opens around the nearest candidate left. Deviation: when no candidate is left at all, the
+/// cells of closed windows are reasons again, so that a run ends with nothing open.
+#[derive(Debug, Clone)]
+pub(crate) struct Window {
+    grid: Grid,
+    radius: f64,
+    center: Option<Cell>,
+    closed: Vec<bool>,
+}
+
+impl Window {
+    /// No window is open, none was.
+    pub(crate) fn new(grid: Grid, radius: f64) -> Self {
+        Self { grid, radius, center: None, closed: vec![false; grid.len()] }
+    }
+
+    /// Where the open window is.
+    pub(crate) fn center(&self) -> Option<Cell> {
+        self.center
+    }
+
+    /// Opens a window around a cell.
+    pub(crate) fn open(&mut self, center: Cell) {
+        self.center = Some(center);
+    }
+
+    /// Whether the cell with a row-major index lies in the open window.
+    pub(crate) fn holds(&self, index: usize) -> bool {
+        self.center.is_some_and(|center| {
+            let offset = self.grid.center(self.grid.cell(index)) - self.grid.center(center);
+            offset.norm() <= self.radius
+        })
+    }
+
+    /// Whether the cell with a row-major index lies in a closed window.
+    pub(crate) fn is_closed(&self, index: usize) -> bool {
+        self.closed[index]
+    }
+
+    /// Closes the open window; returns the cells that are no reasons any more.
+    pub(crate) fn close(&mut self) -> Vec<usize> {
+        let newly: Vec<usize> =
+            (0..self.grid.len()).filter(|i| self.holds(*i) && !self.closed[*i]).collect();
+        newly.iter().for_each(|i| self.closed[*i] = true);
+        self.center = None;
+        newly
+    }
+
+    /// Forgets that windows were closed; returns the cells that may be reasons again.
+    pub(crate) fn reopen_all(&mut self) -> Vec<usize> {
+        let all = (0..self.grid.len()).filter(|i| self.closed[*i]).collect();
+        self.closed.fill(false);
+        all
+    }
+}

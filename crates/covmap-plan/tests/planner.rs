@@ -1,0 +1,181 @@
+//! The planner on random maps: what it keeps equals what the literal equations say.
+#![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
+
+use covmap::{Cell, CoverageMap, Grid, Raster};
+use covmap_model::{ModelParameters, SensorModel, integrate, integrate_body};
+use covmap_plan::{
+    CellStatus, GAIN_TOLERANCE, Planner, PlannerParameters, Stencil, Strategy,
+    expected_information_gain,
+};
+use covmap_sonar::{Range, Scan, SonarRing};
+use nalgebra::{Isometry2, Point2};
+use proptest::prelude::*;
+use proptest::strategy::Strategy as Generator;
+
+const RADIUS: f64 = 0.27;
+
+struct Setting {
+    model: SensorModel,
+    parameters: PlannerParameters,
+    map: CoverageMap,
+    planner: Planner,
+}
+
+fn setting(strategy: Strategy, bins: usize, change: impl Fn(&mut PlannerParameters)) -> Setting {
+    let model_parameters = ModelParameters { bins, usable_range: 1.5, ..ModelParameters::b21r() };
+    let model = SensorModel::new(&model_parameters, &SonarRing::b21r(), 0.1).unwrap();
+    let mut parameters = PlannerParameters { strategy, ..PlannerParameters::standard() };
+    change(&mut parameters);
+    let grid = Grid::new(Point2::new(-2.0, -1.5), 0.1, 40, 30).unwrap();
+    let map = CoverageMap::new(grid, bins).unwrap();
+    let outside = Raster::filled(grid, false);
+    let planner = Planner::new(&parameters, &model, &outside, RADIUS, 0.0).unwrap();
+    Setting { model, parameters, map, planner }
+}
+
+impl Setting {
+    fn scan(&mut self, x: f64, y: f64, ranges: &[Range]) {
+        let here = self.map.grid().center(self.map.grid().cell_at(Point2::new(x, y)).unwrap());
+        let scan =
+            Scan { pose: Isometry2::new(here.coords, 0.0), time: 0.0, ranges: ranges.to_vec() };
+        let changes = integrate(&self.model, &mut self.map, &scan);
+        self.planner.observe(&self.map, &scan, &changes);
+    }
+
+    fn stand(&mut self, x: f64, y: f64) {
+        let at = Point2::new(x, y);
+        let changes = integrate_body(&mut self.map, at, at, RADIUS);
+        self.planner.body_moved(&self.map, &changes);
+        self.planner.stand_on(self.map.grid().cell_at(at).unwrap());
+    }
+}
+
+fn some_ranges() -> impl Generator<Value = Vec<Range>> {
+    let range = prop_oneof![
+        5 => (0.2..2.0f64).prop_map(Range::Echo),
+        1 => Just(Range::NoEcho),
+        1 => Just(Range::Missing),
+    ];
+    prop::collection::vec(range, 24)
+}
+
+fn some_scans() -> impl Generator<Value = Vec<(f64, f64, Vec<Range>)>> {
+    prop::collection::vec((-1.0..1.0f64, -0.7..0.7f64, some_ranges()), 1..6)
+}
+
+fn strategies() -> impl Generator<Value = Strategy> {
+    prop::sample::select(vec![
+        Strategy::Cl,
+        Strategy::Ig,
+        Strategy::IgWin { radius: 0.8 },
+        Strategy::IgCl { alpha: 0.3 },
+        Strategy::Count { times: 2.0, half_distance: Some(2.0) },
+    ])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn the_fast_gain_is_the_literal_one_after_every_scan(
+        scans in some_scans(), bins in prop::sample::select(vec![6, 11, 16, 33]),
+        share in prop_oneof![3 => Just(0.0), 1 => 0.0..0.2f64], unknown in prop_oneof![Just(0.0), 0.0..0.5f64]
+    ) {
+        let mut s = setting(Strategy::Ig, bins, |p| (p.uniform_share, p.unknown_reflection) = (share, unknown));
+        s.stand(0.0, 0.0);
+        let stencil = Stencil::new(&s.model, 0.0);
+        let home = s.map.grid().cell_at(Point2::origin()).unwrap();
+        for (x, y, ranges) in scans {
+            s.scan(x, y, &ranges);
+            let table = s.planner.candidate_table(home);
+            let largest = table.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
+            for record in table.iter().step_by(7) {
+                let exact = expected_information_gain(&s.map, &s.model, &stencil, &s.parameters, record.cell);
+                prop_assert!(
+                    (record.gain - exact).abs() <= GAIN_TOLERANCE * largest,
+                    "{:?}: {} is not {}", record.cell, record.gain, exact
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_kept_equals_what_a_fresh_planner_computes(scans in some_scans(), strategy in strategies()) {
+        let mut s = setting(strategy, 11, |_| ());
+        s.stand(0.0, 0.0);
+        let home = s.map.grid().cell_at(Point2::origin()).unwrap();
+        for (x, y, ranges) in scans {
+            s.scan(x, y, &ranges);
+            s.planner.candidate_table(home);
+            let mut fresh = setting(strategy, 11, |_| ());
+            fresh.stand(0.0, 0.0);
+            let all: Vec<covmap::Change> = s.map.grid().cells().map(|cell| {
+                let after = s.map.entropy(cell);
+                covmap::Change { cell, before: after, after }
+            }).collect();
+            fresh.planner.body_moved(&s.map, &all);
+            for cell in s.map.grid().cells().step_by(11) {
+                prop_assert_eq!(s.planner.cells_in_sight(cell), fresh.planner.cells_in_sight(cell));
+            }
+        }
+    }
+
+    #[test]
+    fn a_decision_is_the_argmax_of_the_table(scans in some_scans(), strategy in strategies()) {
+        let mut s = setting(strategy, 11, |_| ());
+        s.stand(0.0, 0.0);
+        let home = s.map.grid().cell_at(Point2::origin()).unwrap();
+        for (x, y, ranges) in scans {
+            s.scan(x, y, &ranges);
+        }
+        let table = s.planner.candidate_table(home);
+        let certificate = s.planner.certificate(&s.map, home);
+        let open = certificate.values().iter().filter(|c| **c == CellStatus::Open).count();
+        let decision = s.planner.choose(&s.map, home);
+        prop_assert_eq!(open > 0, decision.is_some());
+        prop_assert_eq!(table.is_empty(), decision.is_none());
+        if let Some(decision) = decision {
+            let chosen = table.iter().find(|r| r.cell == decision.target).unwrap();
+            prop_assert!(decision.best.iter().any(|r| r.cell == decision.target));
+            let top = table.iter().map(|r| r.score).fold(f64::NEG_INFINITY, f64::max);
+            if !matches!(strategy, Strategy::IgWin { .. }) {
+                prop_assert!(chosen.score >= top - 1e-4 * (1.0 + top.abs()));
+                prop_assert_eq!(decision.candidates, table.len());
+            }
+            prop_assert!(decision.path.is_empty() || *decision.path.last().unwrap() == decision.target);
+        }
+    }
+}
+
+#[test]
+fn nothing_known_offers_nothing_to_do_from_afar() {
+    let mut s = setting(Strategy::Cl, 11, |_| ());
+    s.stand(0.0, 0.0);
+    let home = s.map.grid().cell_at(Point2::origin()).unwrap();
+    // The robot sees the unknown around it and measures where it stands.
+    let decision = s.planner.choose(&s.map, home).unwrap();
+    assert_eq!((decision.target, decision.path.len()), (home, 0));
+    assert_eq!(s.planner.cells_in_sight(home).len(), {
+        let p = s.map.grid().center(home);
+        let near = |c: &Cell| {
+            let d = s.map.grid().center(*c) - p;
+            // No echo is free space up to one metre from the sensors at .25 m.
+            (0.26..1.24).contains(&d.norm())
+        };
+        s.map.grid().cells().filter(near).count()
+    });
+}
+
+#[test]
+fn a_wall_hides_what_is_behind_it() {
+    let mut s = setting(Strategy::Ig, 11, |_| ());
+    s.stand(0.0, 0.0);
+    let ranges = vec![Range::Echo(0.75); 24];
+    (0..8).for_each(|_| s.scan(0.0, 0.0, &ranges));
+    let home = s.map.grid().cell_at(Point2::origin()).unwrap();
+    let center = s.map.grid().center(home);
+    for (index, _) in s.planner.cells_in_sight(home) {
+        let distance = (s.map.grid().center(s.map.grid().cell(index)) - center).norm();
+        assert!(distance < 1.0 + 0.25 + 0.1, "{distance}");
+    }
+}
