@@ -3,7 +3,7 @@
 use crate::{Outcome, SensorModel};
 use covmap::{Cell, Change, CoverageMap, Grid, MAX_BINS};
 use covmap_sonar::Scan;
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 impl SensorModel {
     /// Visits each cell of C(l, d) of every reading of a scan, beam by beam, with its
@@ -59,40 +59,34 @@ pub fn integrate_body(
     radius: f64,
 ) -> Vec<Change> {
     let grid = *map.grid();
-    let low = grid.unbounded_cell_at(from.inf(&to) - nalgebra::Vector2::repeat(radius));
-    let high = grid.unbounded_cell_at(from.sup(&to) + nalgebra::Vector2::repeat(radius));
-    let mut changes = Vec::new();
-    for y in low.y..=high.y {
-        for x in low.x..=high.x {
-            let cell = Cell::new(x, y);
-            if grid.index(cell).is_some() && is_inside_body(&grid, cell, from, to, radius) {
-                changes.extend(map.pin_free(cell));
-            }
-        }
-    }
-    changes
+    // The swept disc is convex: it holds a cell if it holds the corners.
+    let is_inside = |cell: &Cell| {
+        let corner = |(i, j): (i32, i32)| grid.lower_corner(cell.offset(i, j));
+        let mut corners = [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().map(corner);
+        corners.all(|corner| is_under_body(corner, from, to, radius))
+    };
+    let inside = cells_under_body(&grid, from, to, radius).into_iter().filter(is_inside);
+    inside.filter_map(|cell| map.pin_free(cell)).collect()
 }
 
-/// Whether a cell lies entirely inside the disc of `radius` \[m\] that sweeps from `from` to
-/// `to`.
-pub fn is_inside_body(
-    grid: &Grid,
-    cell: Cell,
-    from: Point2<f64>,
-    to: Point2<f64>,
-    radius: f64,
-) -> bool {
+/// The cells of a grid whose centres are under the disc of `radius` \[m\] somewhere on the way
+/// from `from` to `to`, in row-major order.
+pub fn cells_under_body(grid: &Grid, from: Point2<f64>, to: Point2<f64>, radius: f64) -> Vec<Cell> {
+    let margin = Vector2::repeat(radius);
+    let low = grid.unbounded_cell_at(from.inf(&to) - margin);
+    let high = grid.unbounded_cell_at(from.sup(&to) + margin);
+    let side = |n: usize| i32::try_from(n).unwrap_or(i32::MAX) - 1;
+    let rows = low.y.max(0)..=high.y.min(side(grid.height()));
+    let columns = low.x.max(0)..=high.x.min(side(grid.width()));
+    let cells = rows.flat_map(|y| columns.clone().map(move |x| Cell::new(x, y)));
+    cells.filter(|cell| is_under_body(grid.center(*cell), from, to, radius)).collect()
+}
+
+fn is_under_body(point: Point2<f64>, from: Point2<f64>, to: Point2<f64>, radius: f64) -> bool {
     let way = to - from;
-    let length_squared = way.norm_squared();
-    let near = |corner: Point2<f64>| {
-        let along = (corner - from).dot(&way) / length_squared;
-        let along = if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 };
-        (corner - (from + way * along)).norm() <= radius
-    };
-    // The swept disc is convex: it holds the cell if it holds its corners.
-    [(0, 0), (1, 0), (0, 1), (1, 1)]
-        .iter()
-        .all(|(i, j)| near(grid.lower_corner(cell.offset(*i, *j))))
+    let along = (point - from).dot(&way) / way.norm_squared();
+    let along = if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 };
+    (point - (from + way * along)).norm() <= radius
 }
 
 /// The cells that the readings of a scan intercept, with their distances from the sensor:
@@ -131,7 +125,7 @@ mod tests {
     use super::*;
     use crate::ModelParameters;
     use covmap_sonar::{Range, SonarRing};
-    use nalgebra::{Isometry2, Vector2};
+    use nalgebra::Isometry2;
     use proptest::prelude::*;
     use std::f64::consts::{FRAC_PI_2, PI};
 

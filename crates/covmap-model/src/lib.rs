@@ -33,7 +33,7 @@ mod scan_counts;
 mod sensor_model;
 
 pub use footprint::{Footprint, FootprintCell, FootprintError, FootprintRule};
-pub use integrate::{integrate, integrate_body, intercepted, is_inside_body};
+pub use integrate::{cells_under_body, integrate, integrate_body, intercepted};
 pub use occupancy::{OccupancyGrid, OccupancyParameters};
 pub use parameters::{Linear, ModelError, ModelParameters, NoEchoParameters};
 pub use scan_counts::{Counting, ScanCounts};

@@ -11,8 +11,9 @@ use crate::{
     Stencil, Strategy, TravelCosts, expected_information_gain, travel_costs,
 };
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
-use covmap_model::{SensorModel, intercepted};
+use covmap_model::{SensorModel, cells_under_body, intercepted};
 use covmap_sonar::Scan;
+use nalgebra::Point2;
 
 /// The fast evaluation of E[I] is within this of the literal one, in units of the largest
 /// absolute gain of the decision; candidates closer to the best are decided by the latter.
@@ -36,6 +37,7 @@ pub struct Planner {
     model: SensorModel,
     stencil: Stencil,
     grid: Grid,
+    radius: f64,
     cells: Cells,
     traversable: Traversable,
     exploration: Exploration,
@@ -89,6 +91,7 @@ impl Planner {
             model: model.clone(),
             stencil,
             grid,
+            radius,
             cells,
             beams,
             window,
@@ -136,8 +139,19 @@ impl Planner {
         }
     }
 
-    /// Takes note of what the robot's body told about the map.
-    pub fn body_moved(&mut self, map: &CoverageMap, changes: &[Change]) {
+    /// Takes note that the robot's body was all the way between two points, and of what that
+    /// changed in the map, if anything.
+    pub fn body_moved(
+        &mut self,
+        map: &CoverageMap,
+        from: Point2<f64>,
+        to: Point2<f64>,
+        changes: &[Change],
+    ) {
+        if self.parameters.body_evidence != BodyEvidence::Off {
+            let under = cells_under_body(&self.grid, from, to, self.radius);
+            under.into_iter().for_each(|cell| self.traversable.cover(cell));
+        }
         self.take_over(map, changes);
     }
 

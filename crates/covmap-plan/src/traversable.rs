@@ -7,6 +7,8 @@ use covmap::{Cell, Grid};
 /// Choice: a view-point is traversable if its cell is known with a most likely coverage of
 /// at most `traversable_coverage`, and no known cell of more is nearer than the robot's
 /// radius to its centre. Where the robot stood it can stand again; where it bumped it cannot.
+/// An unknown cell whose centre was under the robot's body counts as free: on coarse grids
+/// it is too near for the sensors and too large to be under the body entirely.
 #[derive(Debug, Clone)]
 pub(crate) struct Traversable {
     grid: Grid,
@@ -16,6 +18,8 @@ pub(crate) struct Traversable {
     blockers: Vec<u16>,
     blocking: Vec<bool>,
     free: Vec<bool>,
+    /// The body was over the centre of the cell.
+    under_body: Vec<bool>,
     stood: Vec<bool>,
     bumped: Vec<bool>,
 }
@@ -35,6 +39,7 @@ impl Traversable {
             blockers: vec![0; grid.len()],
             blocking: none.clone(),
             free: none.clone(),
+            under_body: none.clone(),
             stood: none.clone(),
             bumped: none,
         }
@@ -42,7 +47,8 @@ impl Traversable {
 
     /// Whether the robot can stand on the view-point with a row-major index.
     pub(crate) fn at(&self, index: usize) -> bool {
-        !self.bumped[index] && (self.stood[index] || self.free[index] && self.blockers[index] == 0)
+        let open = self.free[index] || self.under_body[index];
+        !self.bumped[index] && (self.stood[index] || open && self.blockers[index] == 0)
     }
 
     /// Takes over what is known of a cell: `Some(true)` if the robot may drive over it,
@@ -87,6 +93,13 @@ impl Traversable {
         }
     }
 
+    /// The robot's body was over the centre of a cell.
+    pub(crate) fn cover(&mut self, cell: Cell) {
+        if let Some(index) = self.grid.index(cell) {
+            self.under_body[index] = true;
+        }
+    }
+
     /// The robot bumped into something when it entered a cell.
     pub(crate) fn bump_at(&mut self, cell: Cell) {
         if let Some(index) = self.grid.index(cell) {
@@ -125,5 +138,7 @@ mod tests {
         let mut traversable = Traversable::new(grid, 0.27);
         traversable.update(1, Some(true), |_| ());
         assert_eq!([0, 1, 2].map(|i| traversable.at(i)), [false, true, false]);
+        traversable.cover(Cell::new(2, 0));
+        assert_eq!([0, 1, 2].map(|i| traversable.at(i)), [false, true, true]);
     }
 }

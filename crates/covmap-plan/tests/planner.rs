@@ -45,7 +45,7 @@ impl Setting {
     fn stand(&mut self, x: f64, y: f64) {
         let at = Point2::new(x, y);
         let changes = integrate_body(&mut self.map, at, at, RADIUS);
-        self.planner.body_moved(&self.map, &changes);
+        self.planner.body_moved(&self.map, at, at, &changes);
         self.planner.stand_on(self.map.grid().cell_at(at).unwrap());
     }
 }
@@ -113,7 +113,7 @@ proptest! {
                 let after = s.map.entropy(cell);
                 covmap::Change { cell, before: after, after }
             }).collect();
-            fresh.planner.body_moved(&s.map, &all);
+            fresh.planner.body_moved(&s.map, Point2::origin(), Point2::origin(), &all);
             for cell in s.map.grid().cells().step_by(11) {
                 prop_assert_eq!(s.planner.cells_in_sight(cell), fresh.planner.cells_in_sight(cell));
             }

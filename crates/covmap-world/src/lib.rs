@@ -1,1 +1,40 @@
-//! The truth: simulated worlds, their sonar echoes, driving in them, and the exact coverage of every cell
+//! The truth: simulated worlds, their echoes, driving, and the exact coverage of every cell.
+//!
+//! The stand-in for building and robot of Stachniss & Burgard (2003), section 5. The principal
+//! type is [`World`], made from a [`Scenario`] or a raster. This crate knows nothing of sensor
+//! models, beliefs and planners: no measurement is made by the model that explains it.
+//!
+//! # Units
+//! Metres, radians counter-clockwise, seconds; coverage in [0, 1].
+//!
+//! ```
+//! use covmap_world::{Scenario, SonarPhysics, Surface, World, stream};
+//! let scenario: Scenario = ron::from_str("(
+//!     name: \"pillar\", extent: (width: 5.0, height: 4.0),
+//!     obstacles: [(shape: Circle(center: (3.0, 2.0), radius: 0.4), surface: Smooth)],
+//! )")?;
+//! let world = World::from_scenario(&scenario, Surface::Rough)?;
+//! let coverage = world.coverage(&world.grid(0.1)?);
+//! let pose = world.default_start(&coverage, 0.27).expect("the robot fits");
+//! let ring = covmap_sonar::SonarRing::b21r();
+//! let ranges = world.fire(&ring, &pose, &SonarPhysics::b21r(), &mut stream(1, "fire", 0));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod coverage;
+mod drive;
+mod error;
+mod geometry;
+mod outline;
+mod raster_world;
+mod scenario;
+mod sight;
+mod sonar;
+mod world;
+
+pub use drive::Drive;
+pub use error::{MAX_EXTENT, MAX_OBSTACLES, MIN_LENGTH, WorldError};
+pub use scenario::{Extent, Obstacle, Scenario, Shape, Start, Surface};
+pub use sight::Seen;
+pub use sonar::{Blanking, PhysicsError, SonarPhysics, stream};
+pub use world::World;

@@ -1,0 +1,114 @@
+//! What is to be explored, and from where.
+
+use crate::{Config, ConfigError};
+use covmap::{Grid, Raster};
+use covmap_world::World;
+use nalgebra::{Isometry2, Point2};
+use serde::{Deserialize, Serialize};
+
+/// How a run measures, and how long it may last.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Limits {
+    /// Measure also while driving, every so many metres; `None` measures at view-points only.
+    pub while_driving: Option<f64>,
+    /// End after so many scans.
+    pub max_scans: Option<usize>,
+}
+
+/// Why a mission cannot be begun.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum MissionError {
+    /// The configuration is invalid.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// The start pose is not finite or not in the extent.
+    #[error("the start ({0}, {1}) lies outside of the world")]
+    StartOutside(f64, f64),
+    /// Something is where the robot should start.
+    #[error(
+        "the robot of radius {radius} m cannot stand at the start ({x}, {y}): the next obstacle is {clearance:.3} m from there"
+    )]
+    StartOccupied {
+        /// Start.
+        x: f64,
+        /// Start.
+        y: f64,
+        /// The robot's radius \[m\].
+        radius: f64,
+        /// The distance to the nearest solid \[m\].
+        clearance: f64,
+    },
+    /// No cell of the world is free.
+    #[error("a robot of radius {0} m fits nowhere in this world")]
+    NoStart(f64),
+    /// The distance between scans while driving is impossible.
+    #[error("measuring while driving every {0} m: it must be at least 0.01 m")]
+    WhileDriving(f64),
+}
+
+/// The environment's extent on its grid, the start, and the configuration: all that the
+/// robot is told.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mission {
+    /// The configuration.
+    pub config: Config,
+    /// The grid of the map.
+    pub grid: Grid,
+    /// The cells outside the extent of the environment.
+    pub outside: Raster<bool>,
+    /// Where the robot starts, `world_from_robot`; the heading is kept.
+    pub start: Isometry2<f64>,
+    /// How it measures and how long.
+    pub limits: Limits,
+}
+
+impl Mission {
+    /// The mission to explore a world; from the world's own start, or, if it gives none,
+    /// from its roomiest place, if `start` is `None`.
+    ///
+    /// # Errors
+    /// If the configuration is invalid or the robot cannot stand at the start.
+    pub fn new(
+        world: &World,
+        config: &Config,
+        start: Option<Isometry2<f64>>,
+        limits: Limits,
+    ) -> Result<Self, MissionError> {
+        config.build()?;
+        if let Some(step) = limits.while_driving.filter(|step| !(0.01..=1e6).contains(step)) {
+            return Err(MissionError::WhileDriving(step));
+        }
+        let grid = world.grid(config.resolution).map_err(ConfigError::from)?;
+        let radius = config.robot.radius;
+        let start = match start.or_else(|| world.given_start()) {
+            Some(start) => start,
+            None => world
+                .default_start(&world.coverage(&grid), radius)
+                .ok_or(MissionError::NoStart(radius))?,
+        };
+        let at = Point2::from(start.translation.vector);
+        let extent = Extent { low: world.lower_left(), high: world.lower_left() + world.size() };
+        if !extent.holds(at) || !start.rotation.angle().is_finite() {
+            return Err(MissionError::StartOutside(at.x, at.y));
+        }
+        let clearance = world.clearance(at);
+        if clearance < radius {
+            return Err(MissionError::StartOccupied { x: at.x, y: at.y, radius, clearance });
+        }
+        let outside = Raster::from_fn(grid, |cell| !extent.holds(grid.center(cell)));
+        Ok(Self { config: config.clone(), grid, outside, start, limits })
+    }
+}
+
+/// The rectangle that is to be explored.
+struct Extent {
+    low: Point2<f64>,
+    high: Point2<f64>,
+}
+
+impl Extent {
+    fn holds(&self, p: Point2<f64>) -> bool {
+        (self.low.x..=self.high.x).contains(&p.x) && (self.low.y..=self.high.y).contains(&p.y)
+    }
+}

@@ -1,0 +1,288 @@
+//! The loop.
+
+use crate::{Event, Mission, MissionError, Robot};
+use covmap::{Cell, CoverageMap, Raster};
+use covmap_model::{SensorModel, integrate, integrate_body};
+use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner};
+use covmap_sonar::Scan;
+use covmap_world::Drive;
+use nalgebra::{Isometry2, Point2};
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+
+/// How a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Ending {
+    /// No cell is open: the certificate says why of each.
+    Explored,
+    /// The budget of scans is spent, and something is still open.
+    BudgetSpent,
+    /// Nothing is open, but the robot could not leave the cell that it started in.
+    StartBlocked,
+    /// Whoever watched the run stopped it.
+    Interrupted,
+}
+
+/// What a run came to.
+#[derive(Debug, Clone)]
+pub struct Run {
+    /// How it ended.
+    pub ending: Ending,
+    /// The belief.
+    pub map: CoverageMap,
+    /// What became of every cell.
+    pub certificate: Raster<CellStatus>,
+    /// Every scan, in order.
+    pub scans: Vec<Scan>,
+    /// The corners of the driven path \[m\].
+    pub trajectory: Vec<Point2<f64>>,
+    /// Length of the path \[m\].
+    pub path_length: f64,
+    /// How many decisions were made.
+    pub decisions: usize,
+    /// How often the robot bumped into something.
+    pub bumps: usize,
+    /// How many candidates had a negative expected information gain, over all decisions.
+    pub negative_gains: usize,
+    /// How many cells were given up by the cap on counted scans.
+    pub capped_cells: usize,
+}
+
+/// What can be looked at while a run goes on.
+#[derive(Debug)]
+pub struct View<'a> {
+    /// The belief.
+    pub map: &'a CoverageMap,
+    /// The planner.
+    pub planner: &'a Planner,
+    /// How many scans there were.
+    pub scans: usize,
+    /// Length of the path so far \[m\].
+    pub path_length: f64,
+    /// The corners of the path so far \[m\].
+    pub trajectory: &'a [Point2<f64>],
+}
+
+/// Explores until nothing is open, the budget is spent, or the hook says stop.
+///
+/// The hook sees every event when it happens: a scan after it is integrated, a decision
+/// before it is carried out. The run is a function of the mission and of what the robot
+/// senses.
+///
+/// # Errors
+/// If the mission's configuration is invalid.
+pub fn explore<R: Robot>(
+    mission: &Mission,
+    robot: &mut R,
+    hook: &mut impl FnMut(&Event, &View<'_>) -> ControlFlow<()>,
+) -> Result<Run, MissionError> {
+    let mut explorer = Explorer::new(mission, robot, hook)?;
+    let ending = match explorer.run() {
+        ControlFlow::Continue(ending) => ending,
+        ControlFlow::Break(()) => Ending::Interrupted,
+    };
+    let _ = explorer.report(Event::End { ending });
+    Ok(explorer.finish(ending))
+}
+
+struct Explorer<'a, R, H> {
+    mission: &'a Mission,
+    robot: &'a mut R,
+    hook: &'a mut H,
+    model: SensorModel,
+    map: CoverageMap,
+    planner: Planner,
+    at: Point2<f64>,
+    cell: Cell,
+    left_start: bool,
+    /// How far the robot drove since it last measured [m].
+    since_scan: f64,
+    scans: Vec<Scan>,
+    trajectory: Vec<Point2<f64>>,
+    path_length: f64,
+    decisions: usize,
+    bumps: usize,
+    negative_gains: usize,
+}
+
+impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, R, H> {
+    fn new(mission: &'a Mission, robot: &'a mut R, hook: &'a mut H) -> Result<Self, MissionError> {
+        let Mission { config, grid, outside, start, .. } = mission;
+        let (_, model) = config.build()?;
+        let planner = Planner::new(
+            &config.planner,
+            &model,
+            outside,
+            config.robot.radius,
+            start.rotation.angle(),
+        )
+        .map_err(crate::ConfigError::from)?;
+        let map = CoverageMap::new(*grid, config.model.bins)
+            .map_err(|_| covmap_model::ModelError::Bins(config.model.bins))
+            .map_err(crate::ConfigError::from)?;
+        let at = Point2::from(start.translation.vector);
+        let cell = grid.cell_at(at).ok_or(MissionError::StartOutside(at.x, at.y))?;
+        Ok(Self {
+            mission,
+            robot,
+            hook,
+            model,
+            map,
+            planner,
+            at,
+            cell,
+            left_start: false,
+            since_scan: 0.0,
+            scans: Vec::new(),
+            trajectory: vec![at],
+            path_length: 0.0,
+            decisions: 0,
+            bumps: 0,
+            negative_gains: 0,
+        })
+    }
+
+    fn run(&mut self) -> ControlFlow<(), Ending> {
+        self.body_was_between(self.at, self.at);
+        self.planner.stand_on(self.cell);
+        self.scan()?;
+        while let Some(decision) = self.planner.choose(&self.map, self.cell) {
+            if self.is_budget_spent() {
+                return ControlFlow::Continue(Ending::BudgetSpent);
+            }
+            let path = self.way(&decision);
+            self.decide(decision)?;
+            if self.drive(&path)? && !self.is_budget_spent() {
+                self.scan()?;
+            }
+        }
+        let stuck = !self.left_start && !self.planner.can_move(self.cell);
+        ControlFlow::Continue(if stuck { Ending::StartBlocked } else { Ending::Explored })
+    }
+
+    fn is_budget_spent(&self) -> bool {
+        self.mission.limits.max_scans.is_some_and(|most| self.scans.len() >= most)
+    }
+
+    /// The cells to drive over. To stay in its cell means to go to its centre.
+    fn way(&self, decision: &Decision) -> Vec<Cell> {
+        if decision.path.is_empty() { vec![decision.target] } else { decision.path.clone() }
+    }
+
+    fn decide(&mut self, decision: Decision) -> ControlFlow<()> {
+        self.negative_gains += decision.negative_gains;
+        let event = Event::Decision { number: self.decisions, from: self.cell, decision };
+        self.decisions += 1;
+        self.report(event)
+    }
+
+    fn scan(&mut self) -> ControlFlow<()> {
+        let pose = Isometry2::new(self.at.coords, self.mission.start.rotation.angle());
+        let time = self.path_length / self.mission.config.robot.speed;
+        let scan = Scan { pose, time, ranges: self.robot.sense(&pose) };
+        let changes = integrate(&self.model, &mut self.map, &scan);
+        self.planner.observe(&self.map, &scan, &changes);
+        self.since_scan = 0.0;
+        self.scans.push(scan.clone());
+        self.report(Event::Scan { number: self.scans.len() - 1, scan })
+    }
+
+    /// Drives over the centres of some cells; `false` if it bumped into something.
+    fn drive(&mut self, path: &[Cell]) -> ControlFlow<(), bool> {
+        for cell in path {
+            let center = self.mission.grid.center(*cell);
+            if !self.drive_straight(center, *cell)? {
+                return ControlFlow::Continue(false);
+            }
+            self.left_start |= self.cell != *cell;
+            self.cell = *cell;
+            self.planner.stand_on(*cell);
+        }
+        ControlFlow::Continue(true)
+    }
+
+    /// Drives to the centre of a cell, measuring on the way if that is wanted. After a bump
+    /// the robot backs to where it came from, and the cell is blocked.
+    fn drive_straight(&mut self, center: Point2<f64>, cell: Cell) -> ControlFlow<(), bool> {
+        let home = self.at;
+        loop {
+            let left = (center - self.at).norm();
+            let step = self
+                .mission
+                .limits
+                .while_driving
+                .map_or(f64::INFINITY, |every| every - self.since_scan);
+            let measures = step < left;
+            let goal = if measures {
+                self.at + (center - self.at) * (step.max(0.0) / left)
+            } else {
+                center
+            };
+            match self.robot.drive(self.at, goal) {
+                Drive::Arrived => self.advance(goal),
+                Drive::Bumped { at } => {
+                    self.advance(at);
+                    self.bumps += 1;
+                    self.planner.bump_at(cell);
+                    let event = Event::Bump { cell, at, towards: goal };
+                    self.advance(home);
+                    self.report(event)?;
+                    return ControlFlow::Continue(false);
+                }
+            }
+            if !measures {
+                return ControlFlow::Continue(true);
+            }
+            if !self.is_budget_spent() {
+                self.scan()?;
+            }
+            self.since_scan = 0.0;
+        }
+    }
+
+    fn advance(&mut self, to: Point2<f64>) {
+        let length = (to - self.at).norm();
+        if length > 0.0 {
+            self.path_length += length;
+            self.since_scan += length;
+            self.body_was_between(self.at, to);
+            self.trajectory.push(to);
+            self.at = to;
+        }
+    }
+
+    fn body_was_between(&mut self, from: Point2<f64>, to: Point2<f64>) {
+        let config = &self.mission.config;
+        let changes = match config.planner.body_evidence {
+            BodyEvidence::Belief => integrate_body(&mut self.map, from, to, config.robot.radius),
+            BodyEvidence::PlannerOnly | BodyEvidence::Off => Vec::new(),
+        };
+        self.planner.body_moved(&self.map, from, to, &changes);
+    }
+
+    fn report(&mut self, event: Event) -> ControlFlow<()> {
+        let view = View {
+            map: &self.map,
+            planner: &self.planner,
+            scans: self.scans.len(),
+            path_length: self.path_length,
+            trajectory: &self.trajectory,
+        };
+        (self.hook)(&event, &view)
+    }
+
+    fn finish(mut self, ending: Ending) -> Run {
+        Run {
+            ending,
+            certificate: self.planner.certificate(&self.map, self.cell),
+            map: self.map,
+            scans: self.scans,
+            trajectory: self.trajectory,
+            path_length: self.path_length,
+            decisions: self.decisions,
+            bumps: self.bumps,
+            negative_gains: self.negative_gains,
+            capped_cells: self.planner.capped_cells(),
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! The numbers of a run.
+
+use crate::{Ending, Run, Score};
+use covmap_plan::{CellStatus, Strategy};
+use serde::{Deserialize, Serialize};
+
+/// How many cells the certificate puts where.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CellCounts {
+    /// Known with an entropy of at most ε.
+    pub resolved: usize,
+    /// Their entropy did not fall any longer.
+    pub exhausted: usize,
+    /// In sight of a reachable view-point.
+    pub open: usize,
+    /// Out of sight.
+    pub unreachable: usize,
+    /// Outside the extent.
+    pub outside: usize,
+}
+
+impl CellCounts {
+    /// Counts the cells of a certificate.
+    pub fn of(certificate: &[CellStatus]) -> Self {
+        let count = |status| certificate.iter().filter(|s| **s == status).count();
+        Self {
+            resolved: count(CellStatus::Resolved),
+            exhausted: count(CellStatus::Exhausted),
+            open: count(CellStatus::Open),
+            unreachable: count(CellStatus::Unreachable),
+            outside: count(CellStatus::Outside),
+        }
+    }
+}
+
+/// What `summary.json` holds.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// The world's name.
+    pub world: String,
+    /// The strategy as in Fig. 7.
+    pub strategy: String,
+    /// The seed of the noise.
+    pub seed: u64,
+    /// r \[m\].
+    pub resolution: f64,
+    /// How it ended.
+    pub ending: Ending,
+    /// Number of scans, of all beams each.
+    pub scans: usize,
+    /// Number of decisions.
+    pub decisions: usize,
+    /// Number of bumps.
+    pub bumps: usize,
+    /// Length of the driven path \[m\].
+    pub path_length_m: f64,
+    /// The certificate in numbers.
+    pub cells: CellCounts,
+    /// See [`Score`].
+    pub completeness: f64,
+    /// See [`Score`].
+    pub wall_recall: f64,
+    /// See [`Score`].
+    pub phantom: f64,
+    /// See [`Score`].
+    pub mae_mode: f64,
+    /// See [`Score`].
+    pub mae_mean: f64,
+    /// See [`Score`].
+    pub mean_log_likelihood: f64,
+    /// See [`Score`].
+    pub share_entropy_above_0_65: f64,
+    /// Candidates with E\[I\] < 0, over all decisions.
+    pub negative_gains: usize,
+    /// Cells given up by the cap on counted scans.
+    pub capped_cells: usize,
+    /// Time of the run \[s\], by whoever has a clock.
+    pub seconds: f64,
+    /// A hash over the trace and the belief; the same for the same run.
+    pub trace_hash: String,
+}
+
+impl Summary {
+    /// The numbers of a run.
+    pub fn new(
+        world: &str,
+        strategy: &Strategy,
+        seed: u64,
+        run: &Run,
+        score: &Score,
+        seconds: f64,
+        trace_hash: String,
+    ) -> Self {
+        Self {
+            world: world.to_owned(),
+            strategy: strategy.to_string(),
+            seed,
+            resolution: run.map.grid().resolution(),
+            ending: run.ending,
+            scans: run.scans.len(),
+            decisions: run.decisions,
+            bumps: run.bumps,
+            path_length_m: run.path_length,
+            cells: CellCounts::of(run.certificate.values()),
+            completeness: score.completeness,
+            wall_recall: score.wall_recall,
+            phantom: score.phantom,
+            mae_mode: score.mae_mode,
+            mae_mean: score.mae_mean,
+            mean_log_likelihood: score.mean_log_likelihood,
+            share_entropy_above_0_65: score.share_entropy_above_0_65,
+            negative_gains: run.negative_gains,
+            capped_cells: run.capped_cells,
+            seconds,
+            trace_hash,
+        }
+    }
+}

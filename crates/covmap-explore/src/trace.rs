@@ -1,0 +1,129 @@
+//! The trace of a run: every scan and every decision.
+
+use crate::{Config, Ending, Limits};
+use covmap::{Cell, Grid};
+use covmap_plan::Decision;
+use covmap_sonar::Scan;
+use nalgebra::{Isometry2, Point2};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fmt::Write;
+
+/// The version of the trace's format.
+pub const TRACE_VERSION: u32 = 1;
+
+/// The first line of a trace: all that is needed to repeat the run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TraceHeader {
+    /// [`TRACE_VERSION`].
+    pub covmap_trace: u32,
+    /// The name of the world.
+    pub world: String,
+    /// The seed of the noise.
+    pub seed: u64,
+    /// All parameters, the strategy among them.
+    pub config: Config,
+    /// The map's grid.
+    pub grid: Grid,
+    /// The row-major indices of the first cell and past the last of every run of cells in
+    /// the extent: the others are outside.
+    pub inside: Vec<(usize, usize)>,
+    /// Where the robot started, `world_from_robot`.
+    pub start: Isometry2<f64>,
+    /// How it measured, and its budget.
+    pub limits: Limits,
+}
+
+impl TraceHeader {
+    /// The header of a mission in the world called `world`.
+    pub fn new(mission: &crate::Mission, world: &str, seed: u64) -> Self {
+        let outside = mission.outside.values();
+        let mut inside: Vec<(usize, usize)> = Vec::new();
+        for index in (0..outside.len()).filter(|i| !outside[*i]) {
+            match inside.last_mut() {
+                Some((_, end)) if *end == index => *end += 1,
+                _ => inside.push((index, index + 1)),
+            }
+        }
+        Self {
+            covmap_trace: TRACE_VERSION,
+            world: world.to_owned(),
+            seed,
+            config: mission.config.clone(),
+            grid: mission.grid,
+            inside,
+            start: mission.start,
+            limits: mission.limits,
+        }
+    }
+
+    /// The mission that the header describes.
+    pub fn mission(&self) -> crate::Mission {
+        let mut outside = covmap::Raster::filled(self.grid, true);
+        for &(first, end) in &self.inside {
+            let end = end.min(self.grid.len());
+            outside.values_mut()[first.min(end)..end].fill(false);
+        }
+        let Self { config, grid, start, limits, .. } = self.clone();
+        crate::Mission { config, grid, outside, start, limits }
+    }
+}
+
+/// What happens in a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Event {
+    /// The robot measured.
+    Scan {
+        /// How many scans there were before.
+        number: usize,
+        /// What it measured, and where.
+        scan: Scan,
+    },
+    /// The planner chose.
+    Decision {
+        /// How many decisions there were before.
+        number: usize,
+        /// The cell the robot was in.
+        from: Cell,
+        /// What it chose, and why.
+        decision: Decision,
+    },
+    /// The robot bumped into something.
+    Bump {
+        /// The cell that it was entering; it is blocked for good.
+        cell: Cell,
+        /// The last place without contact \[m\].
+        at: Point2<f64>,
+        /// Where it was driving \[m\].
+        towards: Point2<f64>,
+    },
+    /// The run is over.
+    End {
+        /// How it ended.
+        ending: Ending,
+    },
+}
+
+/// A hash over a trace, line by line: the same for the same run.
+#[derive(Debug, Clone, Default)]
+pub struct TraceHasher(Sha256);
+
+impl TraceHasher {
+    /// Adds a line of the trace.
+    pub fn add<T: Serialize>(&mut self, line: &T) {
+        // Numbers are written with all their digits; what cannot be written cannot differ.
+        self.0.update(serde_json::to_vec(line).unwrap_or_default());
+        self.0.update(b"\n");
+    }
+
+    /// The hash as a hexadecimal number.
+    pub fn finish(self) -> String {
+        let mut text = String::new();
+        for byte in self.0.finalize() {
+            let _ = write!(text, "{byte:02x}");
+        }
+        text
+    }
+}

@@ -1,0 +1,90 @@
+//! Driving: a disc that sweeps a straight segment.
+
+use crate::geometry::Face;
+use crate::world::World;
+use nalgebra::{Point2, Vector2};
+
+/// A disc touches what is nearer than its radius by this [m].
+const CONTACT: f64 = 1e-9;
+/// Driving stops this far before contact [m].
+const HAIR: f64 = 1e-6;
+
+/// How a drive ended.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Drive {
+    /// At its goal.
+    Arrived,
+    /// Before something solid.
+    Bumped {
+        /// The last place without contact, a micrometre before it \[m\].
+        at: Point2<f64>,
+    },
+}
+
+impl World {
+    /// Drives a disc straight from one point to another; it stops before it touches a solid.
+    ///
+    /// A disc that is in contact from the start may move away from what it touches, or along
+    /// it, but not nearer. A disc whose centre is in a solid goes nowhere.
+    pub fn drive(&self, from: Point2<f64>, to: Point2<f64>, radius: f64) -> Drive {
+        let way = to - from;
+        let length = way.norm();
+        if length <= 0.0 {
+            return Drive::Arrived;
+        }
+        if !length.is_finite() || self.is_solid(from) {
+            return Drive::Bumped { at: from };
+        }
+        let direction = way / length;
+        let margin = Vector2::repeat(radius);
+        let swept = (from.inf(&to) - margin, from.sup(&to) + margin);
+        let contact = self
+            .faces_meeting(swept)
+            .filter_map(|face| contact(&self.faces[face], from, direction, radius - CONTACT))
+            .fold(f64::INFINITY, f64::min);
+        if contact > length {
+            Drive::Arrived
+        } else {
+            Drive::Bumped { at: from + direction * (contact - HAIR).max(0.0) }
+        }
+    }
+}
+
+/// How far a disc gets until it touches a face; the distance to a face is convex along a
+/// straight line, so what it leaves it never meets again.
+fn contact(face: &Face, from: Point2<f64>, direction: Vector2<f64>, radius: f64) -> Option<f64> {
+    let away = from - face.nearest(from);
+    if away.norm() <= radius {
+        let approaches = away.dot(&direction) < -CONTACT * away.norm();
+        return approaches.then_some(0.0);
+    }
+    let side = [to_side(face, from, direction, radius)];
+    let ends = [face.a, face.b].map(|end| to_disc(end, from, direction, radius));
+    side.into_iter().chain(ends).flatten().min_by(f64::total_cmp)
+}
+
+/// To the line at a distance from the face, between its ends.
+fn to_side(face: &Face, from: Point2<f64>, direction: Vector2<f64>, radius: f64) -> Option<f64> {
+    let (height, climb) = (face.height(from), direction.dot(&face.normal()));
+    let approach = -climb * height.signum();
+    if height.abs() < radius || approach <= 0.0 {
+        return None;
+    }
+    let distance = (height.abs() - radius) / approach;
+    let along = (from + direction * distance - face.a).dot(&face.along);
+    (0.0..=face.length).contains(&along).then_some(distance)
+}
+
+/// To the circle around a point.
+fn to_disc(
+    center: Point2<f64>,
+    from: Point2<f64>,
+    direction: Vector2<f64>,
+    radius: f64,
+) -> Option<f64> {
+    let to_center = center - from;
+    let along = to_center.dot(&direction);
+    let beside = to_center.perp(&direction);
+    let half_chord = radius * radius - beside * beside;
+    (along > 0.0 && half_chord > 0.0).then(|| (along - half_chord.sqrt()).max(0.0))
+}

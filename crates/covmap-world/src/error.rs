@@ -1,0 +1,109 @@
+//! What is wrong with a world.
+
+/// The longest side of a world \[m\].
+pub const MAX_EXTENT: f64 = 1e4;
+/// The shortest length of anything in it \[m\].
+pub const MIN_LENGTH: f64 = 1e-4;
+/// The largest number of obstacles.
+pub const MAX_OBSTACLES: usize = 100_000;
+/// The largest number of points of one polygon.
+pub(crate) const MAX_POLYGON_POINTS: usize = 10_000;
+/// The largest number of points of all outlines; a circle has 64.
+pub(crate) const MAX_POINTS: usize = 1_000_000;
+/// The largest number of pairs of neighbouring faces that are looked at for corners.
+pub(crate) const MAX_PAIRS: usize = 20_000_000;
+
+/// Why a world cannot be made.
+///
+/// Obstacles are counted from 0, in the order of the file.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum WorldError {
+    /// The name cannot name a file.
+    #[error("the name {0:?} must have 1 to 100 characters, none of them a slash or a control")]
+    Name(String),
+    /// The extent has an impossible size.
+    #[error("the extent of {0} × {1} m must lie between {MIN_LENGTH} and {MAX_EXTENT} m a side")]
+    Extent(f64, f64),
+    /// There are too many obstacles.
+    #[error("{0} obstacles are more than {MAX_OBSTACLES}; merge some")]
+    TooManyObstacles(usize),
+    /// The outlines have too many points in all.
+    #[error("the outlines have {0} points in all, more than {MAX_POINTS}; simplify them")]
+    TooManyPoints(usize),
+    /// The obstacles lie too densely on top of each other.
+    #[error("too many obstacles lie on top of each other; merge those that overlap")]
+    TooDense,
+    /// An obstacle has a number that is not finite or lies absurdly far out.
+    #[error(
+        "obstacle {obstacle} ({kind}): {value} must be a finite number within ±{limit}",
+        limit = 2.0 * MAX_EXTENT
+    )]
+    Number {
+        /// Which one.
+        obstacle: usize,
+        /// Its shape.
+        kind: &'static str,
+        /// The number.
+        value: f64,
+    },
+    /// An obstacle has a length that is not positive, or too small.
+    #[error(
+        "obstacle {obstacle} ({kind}): its {what} of {value} m must be at least {MIN_LENGTH} m"
+    )]
+    Length {
+        /// Which one.
+        obstacle: usize,
+        /// Its shape.
+        kind: &'static str,
+        /// Which length.
+        what: &'static str,
+        /// The length \[m\].
+        value: f64,
+    },
+    /// A polygon has too few points that differ.
+    #[error("obstacle {obstacle} (Polygon): {points} different points; a polygon needs at least 3")]
+    TooFewPoints {
+        /// Which one.
+        obstacle: usize,
+        /// How many different points in a row it has.
+        points: usize,
+    },
+    /// A polygon has too many points.
+    #[error(
+        "obstacle {obstacle} (Polygon): {points} points are more than {MAX_POLYGON_POINTS}; simplify it"
+    )]
+    TooManyPolygonPoints {
+        /// Which one.
+        obstacle: usize,
+        /// How many it has.
+        points: usize,
+    },
+    /// A polygon crosses or touches itself.
+    #[error(
+        "obstacle {obstacle} (Polygon): the sides from points {first} and {second} cross or touch near ({x:.3}, {y:.3}); split it into simple polygons"
+    )]
+    SelfCrossing {
+        /// Which one.
+        obstacle: usize,
+        /// The point, counted from 0 without repetitions, where one side starts.
+        first: usize,
+        /// The point where the other side starts.
+        second: usize,
+        /// Near where \[m\].
+        x: f64,
+        /// Near where \[m\].
+        y: f64,
+    },
+    /// A polygon encloses nothing.
+    #[error("obstacle {obstacle} (Polygon): its points lie on a line and enclose no area")]
+    Flat {
+        /// Which one.
+        obstacle: usize,
+    },
+    /// The start is not a pose inside the extent.
+    #[error("the start ({0}, {1}; heading {2}) must be finite and inside the extent")]
+    StartOutside(f64, f64, f64),
+    /// The start lies inside an obstacle.
+    #[error("the start ({0}, {1}) lies inside an obstacle; move it to a free place")]
+    StartInObstacle(f64, f64),
+}

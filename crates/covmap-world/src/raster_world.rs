@@ -1,0 +1,116 @@
+//! The solids and the boundary of a world that is made from a raster.
+
+use crate::geometry::{Face, Feature, Kind};
+use crate::outline::Outline;
+use crate::scenario::Surface;
+use covmap::{Cell, Grid, Raster};
+use nalgebra::Point2;
+use std::ops::Range;
+
+/// Disjoint rectangles that make up the solid cells: runs of a row, grown upwards.
+pub(crate) fn rectangles(solid: &Raster<bool>, surface: Surface) -> Vec<Outline> {
+    let grid = solid.grid();
+    let mut done = Vec::new();
+    let mut open: Vec<(Range<i32>, i32)> = Vec::new();
+    for y in 0..=rows(grid) {
+        let runs = runs(columns(grid), |x| is_solid_cell(solid, x, y, false).then_some(()));
+        let runs: Vec<Range<i32>> = runs.into_iter().map(|(run, ())| run).collect();
+        let mut still = Vec::with_capacity(runs.len());
+        for (run, since) in open {
+            // Both lists are in order of x.
+            if runs.binary_search_by(|r| r.start.cmp(&run.start)).is_ok_and(|k| runs[k] == run) {
+                still.push((run, since));
+            } else {
+                done.push(rectangle(grid, run, since..y, surface));
+            }
+        }
+        for run in runs {
+            if let Err(place) = still.binary_search_by(|(r, _)| r.start.cmp(&run.start)) {
+                still.insert(place, (run, y));
+            }
+        }
+        open = still;
+    }
+    done
+}
+
+/// The faces between solid and free cells, the outside being solid, and their features.
+pub(crate) fn boundary(solid: &Raster<bool>, surface: Surface) -> (Vec<Face>, Vec<Feature>) {
+    let grid = solid.grid();
+    let mut faces = Vec::new();
+    let at = |x: i32, y: i32| grid.lower_corner(Cell::new(x, y));
+    let cell = |x: i32, y: i32| is_solid_cell(solid, x, y, true);
+    // The solid is on the left of a face.
+    for y in 0..=rows(grid) {
+        let step = |x: i32| (cell(x, y) != cell(x, y - 1)).then(|| cell(x, y));
+        for (run, solid_above) in runs(columns(grid), step) {
+            let (left, right) = (at(run.start, y), at(run.end, y));
+            let (a, b) = if solid_above { (left, right) } else { (right, left) };
+            faces.push(Face::new(a, b, surface));
+        }
+    }
+    for x in 0..=columns(grid) {
+        let step = |y: i32| (cell(x, y) != cell(x - 1, y)).then(|| cell(x, y));
+        for (run, solid_right) in runs(rows(grid), step) {
+            let (low, high) = (at(x, run.start), at(x, run.end));
+            let (a, b) = if solid_right { (high, low) } else { (low, high) };
+            faces.push(Face::new(a, b, surface));
+        }
+    }
+    let mut features = Vec::new();
+    for y in 0..=rows(grid) {
+        for x in 0..=columns(grid) {
+            let around = [cell(x, y), cell(x - 1, y), cell(x, y - 1), cell(x - 1, y - 1)];
+            let diagonal = around[0] == around[3] && around[1] == around[2];
+            match around.iter().filter(|&&s| s).count() {
+                1 => features.push(Feature { at: at(x, y), kind: Kind::Edge }),
+                2 if diagonal => features.push(Feature { at: at(x, y), kind: Kind::Corner }),
+                3 => features.push(Feature { at: at(x, y), kind: Kind::Corner }),
+                _ => {}
+            }
+        }
+    }
+    (faces, features)
+}
+
+/// Maximal runs of 0..n in which `kind` is the same and not `None`.
+fn runs<K: PartialEq>(n: i32, kind: impl Fn(i32) -> Option<K>) -> Vec<(Range<i32>, K)> {
+    let mut runs: Vec<(Range<i32>, K)> = Vec::new();
+    for i in 0..n {
+        let Some(kind) = kind(i) else { continue };
+        match runs.last_mut() {
+            Some((run, last)) if run.end == i && *last == kind => run.end = i + 1,
+            _ => runs.push((i..i + 1, kind)),
+        }
+    }
+    runs
+}
+
+fn rectangle(grid: &Grid, x: Range<i32>, y: Range<i32>, surface: Surface) -> Outline {
+    let low = grid.lower_corner(Cell::new(x.start, y.start));
+    let high = grid.lower_corner(Cell::new(x.end, y.end));
+    let points = vec![low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y)];
+    Outline { points, surface }
+}
+
+fn is_solid_cell(solid: &Raster<bool>, x: i32, y: i32, outside: bool) -> bool {
+    solid.get(Cell::new(x, y)).copied().unwrap_or(outside)
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    reason = "a grid has at most 2e7 cells"
+)]
+fn columns(grid: &Grid) -> i32 {
+    grid.width() as i32
+}
+
+#[allow(
+    clippy::cast_possible_truncation,
+    clippy::cast_possible_wrap,
+    reason = "a grid has at most 2e7 cells"
+)]
+fn rows(grid: &Grid) -> i32 {
+    grid.height() as i32
+}

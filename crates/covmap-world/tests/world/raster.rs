@@ -1,0 +1,86 @@
+//! Worlds that are made from rasters, as pictures.
+
+use covmap::{Cell, Grid, Raster};
+use covmap_world::{SonarPhysics, Surface, World};
+use nalgebra::{Point2, Vector2};
+use proptest::prelude::*;
+
+/// A raster of cells of .5 m from a picture, the top row first.
+pub(crate) fn picture(rows: &[&str]) -> Raster<bool> {
+    let corner = Point2::new(-3.0, 2.0);
+    let grid = Grid::new(corner, 0.5, rows[0].len(), rows.len()).unwrap();
+    let values = rows.iter().rev().flat_map(|row| row.bytes().map(|b| b == b'#')).collect();
+    Raster::from_values(grid, values).unwrap()
+}
+
+fn build(solid: &Raster<bool>) -> World {
+    World::from_raster("picture", solid, Surface::Smooth).unwrap()
+}
+
+#[test]
+fn a_raster_is_covered_where_it_is_solid() {
+    let solid = picture(&["##..", "#..#", "...#", ".#.."]);
+    let coverage = build(&solid).coverage(solid.grid());
+    assert_eq!(coverage, solid.map(|&s| f64::from(u8::from(s))));
+}
+
+#[test]
+fn a_wall_of_many_cells_is_one_smooth_face() {
+    let solid = picture(&["########", "........", "........", "........"]);
+    let world = build(&solid);
+    let ring = covmap_sonar::SonarRing::b21r();
+    let physics = SonarPhysics::b21r().without_noise();
+    // Axis 45° from the wall's normal: nothing in the cone is within 20°, and no joint answers.
+    let pose = nalgebra::Isometry2::new(Vector2::new(-1.0, 2.8), 45.0_f64.to_radians());
+    let beam = covmap_sonar::Beam {
+        pose: nalgebra::Isometry2::identity(),
+        max_range: 1.2,
+        ..ring.beams()[0]
+    };
+    assert_eq!(world.echo(&beam, &pose, &physics), None);
+}
+
+proptest! {
+    #[test]
+    fn a_raster_is_solid_where_it_says(cells in prop::collection::vec(any::<bool>(), 48)) {
+        let grid = Grid::new(Point2::new(1.0, -2.0), 0.25, 8, 6).unwrap();
+        let solid = Raster::from_values(grid, cells).unwrap();
+        let world = build(&solid);
+        prop_assert_eq!(world.coverage(&grid), solid.map(|&s| f64::from(u8::from(s))));
+        for (cell, &expected) in solid.iter() {
+            prop_assert_eq!(world.is_solid(grid.center(cell)), expected);
+            if !expected {
+                let ray = world.cast_ray(grid.center(cell), Vector2::x(), 10.0).unwrap();
+                let mut free = 0;
+                while solid.get(cell.offset(free + 1, 0)) == Some(&false) {
+                    free += 1;
+                }
+                prop_assert!((ray - 0.25 * (f64::from(free) + 0.5)).abs() < 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn another_resolution_gives_the_share_of_the_area(cells in prop::collection::vec(any::<bool>(), 64)) {
+        let grid = Grid::new(Point2::new(-1.0, 0.5), 0.5, 8, 8).unwrap();
+        let solid = Raster::from_values(grid, cells).unwrap();
+        let coarse = Grid::new(grid.lower_left(), 1.0, 4, 4).unwrap();
+        for (cell, covered) in build(&solid).coverage(&coarse).iter() {
+            let part = |dx, dy| solid.get(Cell::new(2 * cell.x + dx, 2 * cell.y + dy)).unwrap();
+            let count = [part(0, 0), part(1, 0), part(0, 1), part(1, 1)];
+            let share = count.iter().filter(|s| ***s).count() as f64 / 4.0;
+            prop_assert!((covered - share).abs() < 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_million_scattered_cells_are_a_world() {
+    use rand_pcg::rand_core::Rng;
+    let grid = Grid::new(Point2::origin(), 0.05, 1000, 1000).unwrap();
+    let mut rng = covmap_world::stream(1, "raster", 0);
+    let solid = Raster::from_fn(grid, |_| rng.next_u32().is_multiple_of(8));
+    let world = build(&solid);
+    assert_eq!(world.coverage(&grid), solid.map(|&s| f64::from(u8::from(s))));
+    assert!(world.size() == Vector2::new(50.0, 50.0));
+}
