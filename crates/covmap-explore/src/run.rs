@@ -44,6 +44,9 @@ pub struct Run {
     pub bumps: usize,
     /// How many candidates had a negative expected information gain, over all decisions.
     pub negative_gains: usize,
+    /// How many scans were counted for each cell: those that should have told something
+    /// about it while it was unfinished.
+    pub counts: Raster<u32>,
     /// How many cells were given up by the cap on counted scans.
     pub capped_cells: usize,
 }
@@ -275,6 +278,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         Run {
             ending,
             certificate: self.planner.certificate(&self.map, self.cell),
+            counts: self.planner.counted_scans(),
             map: self.map,
             scans: self.scans,
             trajectory: self.trajectory,

@@ -1,1 +1,40 @@
-//! Files for covmap: RON, JSON lines, map_server maps, pictures
+//! Files and pictures: RON, JSON lines, the maps of ROS, and PNG pictures of rasters.
+//!
+//! Nothing of Stachniss & Burgard (2003) is in here: [`Picture`] draws, [`OutputFolder`] holds
+//! results that are whole, and [`FileError`] says in one sentence what is wrong with a file.
+//!
+//! This crate knows nothing of worlds, models and planners: it reads what serde can.
+//!
+//! # Units
+//! Metres and radians in the world; pixels for what is drawn; coverage in \[0, 1\].
+//!
+//! ```no_run
+//! use covmap_io::{OutputFolder, Picture, Rgb, load_map_server};
+//!
+//! let building = load_map_server("maps/building.yaml")?;
+//! let results = OutputFolder::create("out/building")?;
+//! Picture::new(building.grid)
+//!     .cells(&building.solid(), |solid| if *solid { Rgb::INK } else { Rgb::WHITE })
+//!     .scale_bar()
+//!     .save(results.path("truth.png"))?;
+//! results.finish()?;
+//! # Ok::<(), covmap_io::FileError>(())
+//! ```
+mod error;
+mod json;
+mod json_lines;
+mod map_server;
+mod output_folder;
+mod pgm;
+mod picture;
+mod read;
+mod ron_file;
+pub use error::FileError;
+pub use json::{read_json, write_json};
+pub use json_lines::{JsonLines, JsonLinesReader, read_json_lines};
+pub use map_server::{CoverageThresholds, MapCell, MapServerError, MapServerMap};
+pub use map_server::{load_map_server, save_map_server};
+pub use output_folder::OutputFolder;
+pub use pgm::PgmError;
+pub use picture::{ColorMap, Key, Marker, Picture, Rgb, coverage_color};
+pub use ron_file::{parse_ron, read_ron, write_ron};

@@ -2,7 +2,7 @@
 
 use crate::cells::{Cells, Offsets};
 use crate::gain::fast::{FastGain, Scratch};
-use crate::{PlannerParameters, RangeLikelihood, Stencil, range_likelihood};
+use crate::{BeamStencil, PlannerParameters, RangeLikelihood, Stencil, range_likelihood};
 use covmap::{Cell, Grid};
 use covmap_model::SensorModel;
 use rayon::prelude::*;
@@ -13,6 +13,29 @@ const SIGHT: u8 = 1;
 const GAIN: u8 = 2;
 /// A cell that is a reason to measure is in the beam's sight.
 const REASON: u8 = 4;
+/// The upper bound of the beam's gain must be computed again.
+const BOUND: u8 = 8;
+
+/// How far the values of view-points are brought up to date.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Upto {
+    /// V(l) only.
+    Sight,
+    /// V(l), and an upper bound of E[I] at least.
+    Bound,
+    /// V(l) and E[I].
+    Gain,
+}
+
+impl Upto {
+    fn flags(self) -> u8 {
+        match self {
+            Upto::Sight => SIGHT,
+            Upto::Bound => SIGHT | BOUND,
+            Upto::Gain => SIGHT | GAIN,
+        }
+    }
+}
 
 /// A beam from which a cell can be seen: the view-point's place from the cell, and the
 /// cell's rank in the beam's order of distance.
@@ -40,6 +63,7 @@ pub(crate) struct BeamCache {
     in_sight: Vec<u16>,
     horizon: Vec<u16>,
     flags: Vec<u8>,
+    /// E[I] of the beam; an upper bound of it while that is marked.
     gain: Vec<f64>,
 }
 
@@ -61,7 +85,7 @@ impl BeamCache {
             onlookers: onlookers(stencil),
             in_sight: vec![0; slots],
             horizon: vec![u16::MAX; slots],
-            flags: vec![SIGHT | GAIN; slots],
+            flags: vec![SIGHT | GAIN | BOUND; slots],
             gain: vec![0.0; slots],
         }
     }
@@ -69,7 +93,7 @@ impl BeamCache {
     /// Marks what depends on a cell whose posterior changed: gains, and, where what it
     /// reflects or whether it is a reason changed as well, sights.
     pub(crate) fn mark(&mut self, cell: Cell, gain: bool, sight: bool) {
-        let mask = if gain { GAIN } else { 0 } | if sight { SIGHT } else { 0 };
+        let mask = if gain { GAIN | BOUND } else { 0 } | if sight { SIGHT } else { 0 };
         let beams = self.stencil.beams.len();
         for onlooker in &self.onlookers {
             let Some(index) = self.grid.index(cell.offset(onlooker.dx, onlooker.dy)) else {
@@ -82,43 +106,60 @@ impl BeamCache {
         }
     }
 
-    /// Brings the sights, and if asked the gains, of the wanted view-points up to date.
-    pub(crate) fn refresh(&mut self, cells: &Cells, wanted: &[bool], with_gain: bool) {
+    /// Marks the gains of a view-point, whatever changed.
+    pub(crate) fn forget_gain(&mut self, view_point: usize) {
+        let slots = self.slots(view_point);
+        self.flags[slots].iter_mut().for_each(|flags| *flags |= GAIN | BOUND);
+    }
+
+    /// Brings the values of the wanted view-points up to date.
+    pub(crate) fn refresh(&mut self, cells: &Cells, wanted: &[bool], upto: Upto) {
         let beams = self.stencil.beams.len();
         let Self { stencil, offsets, uniform_share, fast, in_sight, horizon, flags, gain, .. } =
             self;
-        let dirty = if with_gain { SIGHT | GAIN } else { SIGHT };
-        let slots = (
-            flags.par_chunks_mut(beams),
-            in_sight.par_chunks_mut(beams),
-            horizon.par_chunks_mut(beams),
-            gain.par_chunks_mut(beams),
-        );
-        slots.into_par_iter().enumerate().with_min_len(16).for_each_init(
+        let view_points = flags
+            .par_chunks_mut(beams)
+            .zip(in_sight.par_chunks_mut(beams))
+            .zip(horizon.par_chunks_mut(beams))
+            .zip(gain.par_chunks_mut(beams))
+            .enumerate()
+            .with_min_len(16);
+        view_points.for_each_init(
             Scratch::default,
-            |scratch, (view_point, (flags, in_sight, horizon, gain))| {
-                if !wanted[view_point] || flags.iter().all(|f| f & dirty == 0) {
+            |scratch, (view_point, (((flags, in_sight), horizon), gain))| {
+                if !wanted[view_point] {
                     return;
                 }
-                let here = cells.bordered(view_point);
-                for beam in (0..beams).filter(|b| flags[*b] & dirty != 0).collect::<Vec<_>>() {
-                    let (cone, offsets) = (&stencil.beams[beam], &offsets[beam]);
-                    let at = |i: usize| here.wrapping_add_signed(offsets.bordered[i]);
-                    let rho = |i: usize| cells.reflection(at(i));
-                    range_likelihood(cone, *uniform_share, rho, &mut scratch.likelihood);
-                    let seen = scratch.likelihood.cells_in_sight(cone);
-                    let is_reason = |i: usize| offsets.distance[i] <= cells.limit(at(i));
-                    let reason = if (0..seen).any(is_reason) { REASON } else { 0 };
-                    flags[beam] = flags[beam] & GAIN | reason;
-                    in_sight[beam] = rank(seen);
-                    horizon[beam] = rank(dependency(cone, &scratch.likelihood));
-                    if with_gain && flags[beam] & GAIN != 0 {
-                        gain[beam] = fast.beam_gain(cells, offsets, beam, view_point, scratch);
-                        flags[beam] &= !GAIN;
+                for beam in 0..beams {
+                    if flags[beam] & upto.flags() == 0 {
+                        continue;
+                    }
+                    let looks = Look { cells, offsets: &offsets[beam], view_point };
+                    let cone = &stencil.beams[beam];
+                    looks.ahead(cone, *uniform_share, &mut scratch.likelihood);
+                    if flags[beam] & SIGHT != 0 {
+                        let seen = scratch.likelihood.cells_in_sight(cone);
+                        let reason = if looks.holds_reason(seen) { REASON } else { 0 };
+                        flags[beam] = flags[beam] & !(SIGHT | REASON) | reason;
+                        in_sight[beam] = rank(seen);
+                        horizon[beam] = rank(dependency(cone, &scratch.likelihood));
+                    }
+                    if upto == Upto::Gain && flags[beam] & GAIN != 0 {
+                        gain[beam] =
+                            fast.beam_gain(cells, looks.offsets, beam, view_point, scratch);
+                        flags[beam] &= !(GAIN | BOUND);
+                    } else if upto == Upto::Bound && flags[beam] & BOUND != 0 {
+                        gain[beam] = looks.gain_bound(cone, &scratch.likelihood);
+                        flags[beam] &= !BOUND;
                     }
                 }
             },
         );
+    }
+
+    /// Whether [`Self::gain`] of a view-point is exact, and not an upper bound.
+    pub(crate) fn is_exact(&self, view_point: usize) -> bool {
+        self.slots(view_point).all(|slot| self.flags[slot] & GAIN == 0)
     }
 
     /// Whether a view-point, if it is up to date, holds a reason to measure in sight.
@@ -126,7 +167,7 @@ impl BeamCache {
         self.slots(view_point).any(|slot| self.flags[slot] & REASON != 0)
     }
 
-    /// E[I(l)] of a view-point that is up to date \[nats\].
+    /// E[I(l)] of a view-point that is up to date, or an upper bound of it \[nats\].
     pub(crate) fn gain(&self, view_point: usize) -> f64 {
         #[allow(clippy::cast_precision_loss, reason = "few beams")]
         let beams = self.stencil.beams.len() as f64;
@@ -159,6 +200,54 @@ impl BeamCache {
     }
 }
 
+/// A beam as it looks from a view-point.
+struct Look<'a> {
+    cells: &'a Cells,
+    offsets: &'a Offsets,
+    view_point: usize,
+}
+
+impl Look<'_> {
+    fn ahead(&self, cone: &BeamStencil, uniform_share: f64, out: &mut RangeLikelihood) {
+        let here = self.cells.bordered(self.view_point);
+        let at = |i: usize| here.wrapping_add_signed(self.offsets.bordered[i]);
+        range_likelihood(cone, uniform_share, |i| self.cells.reflection(at(i)), out);
+    }
+
+    /// Whether one of the first `count` cells is a reason to measure from here.
+    fn holds_reason(&self, count: usize) -> bool {
+        let here = self.cells.bordered(self.view_point);
+        let at = |i: usize| here.wrapping_add_signed(self.offsets.bordered[i]);
+        (0..count).any(|i| self.offsets.distance[i] <= self.cells.limit(at(i)))
+    }
+
+    /// An upper bound of the beam's E[I]: no outcome can take more from a cell than its
+    /// entropy, so E[I] ≤ Σ_i H(h(c_i)) · P(c_i is covered). One part in 10⁵ is added for
+    /// rounding.
+    fn gain_bound(&self, cone: &BeamStencil, likelihood: &RangeLikelihood) -> f64 {
+        let here = self.cells.bordered(self.view_point);
+        let entropy = |i: usize| {
+            let changeable =
+                self.cells.is_changeable(here.wrapping_add_signed(self.offsets.bordered[i]));
+            let index = || self.view_point.wrapping_add_signed(self.offsets.plain[i]);
+            if changeable { f64::from(self.cells.entropy(index())) } else { 0.0 }
+        };
+        // Sums over prefixes of the cells, outcome by outcome: their reaches grow with k.
+        let (mut bound, mut sum, mut next) = (0.0, 0.0, 0);
+        for (p, reach) in likelihood.echo.iter().zip(&cone.echo_reach) {
+            if *p > 0.0 {
+                sum += (next..*reach).map(entropy).sum::<f64>();
+                next = *reach;
+                bound += p * sum;
+            }
+        }
+        if likelihood.no_echo > 0.0 {
+            bound += likelihood.no_echo * (0..cone.no_echo_reach).map(entropy).sum::<f64>();
+        }
+        bound * (1.0 + 1e-5) + 1e-9
+    }
+}
+
 #[allow(clippy::cast_possible_truncation, reason = "a planner refuses beams of more cells")]
 fn rank(count: usize) -> u16 {
     count as u16
@@ -166,7 +255,7 @@ fn rank(count: usize) -> u16 {
 
 /// How many of a beam's cells decide its sight and its gain: those that may reflect, and
 /// those that a possible outcome covers.
-fn dependency(beam: &crate::BeamStencil, likelihood: &RangeLikelihood) -> usize {
+fn dependency(beam: &BeamStencil, likelihood: &RangeLikelihood) -> usize {
     let traced = beam.rings[..likelihood.traced].iter().map(|ring| ring.end);
     let outcomes = (0..=likelihood.echo.len()).filter(|k| likelihood.probability(*k) > 0.0);
     traced.chain(outcomes.map(|k| beam.reach(k))).max().unwrap_or(0)

@@ -88,7 +88,7 @@ impl Cells {
     }
 
     /// The place of a cell in the bordered rasters, by its row-major index.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn bordered(&self, index: usize) -> usize {
         let (x, y) = (index % self.grid.width(), index / self.grid.width());
         (y + self.border) * (self.grid.width() + 2 * self.border) + x + self.border
@@ -123,19 +123,19 @@ impl Cells {
     }
 
     /// ρ of the cell at a place in the bordered rasters.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn reflection(&self, bordered: usize) -> f64 {
         self.reflections[usize::from(self.codes[bordered])]
     }
 
     /// Whether a measurement can change the cell at a place in the bordered rasters.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn is_changeable(&self, bordered: usize) -> bool {
         usize::from(self.codes[bordered]) <= self.bins + UNKNOWN
     }
 
     /// The distance up to which the cell at a place in the bordered rasters is a reason.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn limit(&self, bordered: usize) -> f32 {
         self.limits[bordered]
     }
@@ -148,13 +148,13 @@ impl Cells {
     }
 
     /// h and h·log h of a cell by its row-major index.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn row(&self, index: usize) -> (&[f32], &[f32]) {
         self.rows[2 * self.bins * index..2 * self.bins * (index + 1)].split_at(self.bins)
     }
 
     /// A cell's entropy by its row-major index \[nats\].
-    #[inline]
+    #[inline(always)]
     pub(crate) fn entropy(&self, index: usize) -> f32 {
         self.entropies[index]
     }

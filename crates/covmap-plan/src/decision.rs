@@ -31,7 +31,8 @@ pub struct Decision {
     pub path: Vec<Cell>,
     /// The number of candidates, |L(c)|.
     pub candidates: usize,
-    /// How many of them have E[I] < 0, as far as gains were computed.
+    /// How many of them have E\[I\] < 0, as far as gains were computed: not where an upper
+    /// bound showed that a candidate cannot be among the best.
     pub negative_gains: usize,
     /// How many were so close to the best that the literal equations decided between them.
     pub decided_by_oracle: usize,

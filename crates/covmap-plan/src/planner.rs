@@ -1,6 +1,6 @@
 //! The planner: one owner of what is explored, what stalls, and what was computed before.
 
-use crate::beam_cache::BeamCache;
+use crate::beam_cache::{BeamCache, Upto};
 use crate::cells::Cells;
 use crate::decision::{Score, best};
 use crate::exploration::{CountedScan, Exploration};
@@ -20,6 +20,8 @@ use nalgebra::Point2;
 pub const GAIN_TOLERANCE: f64 = 1e-5;
 /// How many candidates a decision reports.
 const REPORTED: usize = 5;
+/// How many candidates are evaluated at once, at first.
+const BATCH: usize = 32;
 
 /// Chooses view-points by the strategies of section 4, and knows when all is explored.
 ///
@@ -216,8 +218,17 @@ impl Planner {
         let Some(index) = self.grid.index(view_point) else { return Vec::new() };
         let mut wanted = vec![false; self.grid.len()];
         wanted[index] = true;
-        self.beams.refresh(&self.cells, &wanted, false);
+        self.beams.refresh(&self.cells, &wanted, Upto::Sight);
         self.beams.cells_in_sight(index)
+    }
+
+    /// The open cells in sight of a view-point: by their row-major index, with their distance
+    /// from the sensor and the distance up to which they are a reason to measure \[m\].
+    pub fn open_cells(&mut self, view_point: Cell) -> Vec<(usize, f32, f32)> {
+        let in_sight = self.cells_in_sight(view_point).into_iter();
+        let limit = |index: usize| self.cells.limit(self.cells.bordered(index));
+        let with_limit = |(index, distance)| (index, distance, limit(index));
+        in_sight.map(with_limit).filter(|(_, distance, limit)| distance <= limit).collect()
     }
 
     /// L(c) and the ways there, for a robot in the cell `from`.
@@ -225,21 +236,16 @@ impl Planner {
         let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
         let mut reachable = vec![false; self.grid.len()];
         costs.reached().for_each(|index| reachable[index] = true);
-        self.beams.refresh(&self.cells, &reachable, false);
+        self.beams.refresh(&self.cells, &reachable, Upto::Sight);
         let is_candidate = |i: &usize| reachable[*i] && self.beams.has_reason(*i);
         Candidates { indices: (0..self.grid.len()).filter(is_candidate).collect(), costs }
     }
 
-    /// The candidates with their costs and, if asked, their gains; scores are not filled in.
-    fn records(&mut self, candidates: &Candidates, with_gain: bool) -> Vec<CandidateRecord> {
-        if with_gain {
-            let mut wanted = vec![false; self.grid.len()];
-            candidates.indices.iter().for_each(|i| wanted[*i] = true);
-            self.beams.refresh(&self.cells, &wanted, true);
-        }
+    /// The candidates with their costs; gains and scores are not filled in.
+    fn records(&self, candidates: &Candidates) -> Vec<CandidateRecord> {
         let record = |&index: &usize| CandidateRecord {
             cell: self.grid.cell(index),
-            gain: if with_gain { self.beams.gain(index) } else { 0.0 },
+            gain: 0.0,
             cost: candidates.costs.cost(index).unwrap_or(f64::INFINITY),
             gain_term: 0.0,
             cost_term: 0.0,
@@ -248,13 +254,69 @@ impl Planner {
         candidates.indices.iter().map(record).collect()
     }
 
+    /// Fills in the gains of some records, up to date as far as asked.
+    fn fill_gains(&mut self, records: &mut [CandidateRecord], which: &[usize], upto: Upto) {
+        let mut wanted = vec![false; self.grid.len()];
+        let index = |r: &CandidateRecord| self.grid.index(r.cell).unwrap_or(0);
+        for i in which {
+            wanted[index(&records[*i])] = true;
+            if !self.parameters.strategy.uses_gain() {
+                self.beams.forget_gain(index(&records[*i]));
+            }
+        }
+        self.beams.refresh(&self.cells, &wanted, upto);
+        which.iter().for_each(|i| records[*i].gain = self.beams.gain(index(&records[*i])));
+    }
+
     /// Every candidate for a robot in the cell `from`, with gains and scores, in row-major
     /// order: what the next decision is made from. For IG_WIN those of the whole map.
     pub fn candidate_table(&mut self, from: Cell) -> Vec<CandidateRecord> {
         let candidates = self.candidates(from);
-        let mut records = self.records(&candidates, true);
+        let mut records = self.records(&candidates);
+        let all: Vec<usize> = (0..records.len()).collect();
+        self.fill_gains(&mut records, &all, Upto::Gain);
         self.score().apply(&mut records);
         records
+    }
+
+    /// Computes gains and scores until the five best are exact, and all that could be among
+    /// them: candidates are evaluated in the order of upper bounds, and those that cannot
+    /// matter keep theirs.
+    fn evaluate(&mut self, records: &mut [CandidateRecord]) {
+        let score = self.score();
+        let all: Vec<usize> = (0..records.len()).collect();
+        self.fill_gains(records, &all, Upto::Bound);
+        for rank in [|r: &CandidateRecord| r.gain, |r: &CandidateRecord| r.score] {
+            // First the largest gain, by which Eq. (16) divides, then the best scores.
+            for batch in (0..).map(|round| BATCH << round.min(8)) {
+                score.apply(records);
+                let inexact = self.could_matter(records, rank, score);
+                if inexact.is_empty() {
+                    break;
+                }
+                self.fill_gains(records, &inexact[..batch.min(inexact.len())], Upto::Gain);
+            }
+        }
+    }
+
+    /// The candidates without an exact gain that may belong to the best, best first.
+    fn could_matter(
+        &self,
+        records: &[CandidateRecord],
+        rank: fn(&CandidateRecord) -> f64,
+        score: Score,
+    ) -> Vec<usize> {
+        let is_exact =
+            |r: &CandidateRecord| self.beams.is_exact(self.grid.index(r.cell).unwrap_or(0));
+        let (exact, mut inexact): (Vec<usize>, Vec<usize>) =
+            (0..records.len()).partition(|i| is_exact(&records[*i]));
+        let mut known: Vec<f64> = exact.iter().map(|i| rank(&records[*i])).collect();
+        known.sort_by(|a, b| b.total_cmp(a));
+        let doubt = 4.0 * score.uncertainty(records, GAIN_TOLERANCE);
+        let enough = known.get(REPORTED - 1).map_or(f64::NEG_INFINITY, |worst| worst - doubt);
+        inexact.retain(|i| rank(&records[*i]) >= enough);
+        inexact.sort_by(|a, b| rank(&records[*b]).total_cmp(&rank(&records[*a])).then(a.cmp(b)));
+        inexact
     }
 
     fn score(&self) -> Score {
@@ -270,37 +332,32 @@ impl Planner {
     pub fn choose(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
         let candidates = self.windowed_candidates(map, from)?;
         let with_gain = self.parameters.strategy.uses_gain();
-        let mut records = self.records(&candidates, with_gain);
-        let score = self.score();
-        score.apply(&mut records);
+        let mut records = self.records(&candidates);
+        if with_gain {
+            self.evaluate(&mut records);
+        }
+        self.score().apply(&mut records);
         let decided_by_oracle = if with_gain { self.decide_ties(map, &mut records) } else { 0 };
         let target = records[best(&records)?].cell;
         let negative_gains = records.iter().filter(|r| r.gain < 0.0).count();
-        let best = self.report(records, with_gain);
+        let best = self.report(records);
         let path = candidates.costs.path_to(target)?;
         let candidates = candidates.indices.len();
         self.target = Some((target, self.cells_in_sight(target)));
         Some(Decision { target, path, candidates, negative_gains, decided_by_oracle, best })
     }
 
-    /// The five best candidates; where gains were not needed they are computed for these.
-    fn report(
-        &mut self,
-        mut records: Vec<CandidateRecord>,
-        with_gain: bool,
-    ) -> Vec<CandidateRecord> {
-        let max_cost_term = |r: &CandidateRecord| r.cost_term;
+    /// The five best candidates; where the strategy needs no gains they are computed for
+    /// these.
+    fn report(&mut self, mut records: Vec<CandidateRecord>) -> Vec<CandidateRecord> {
         records.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell)));
         records.truncate(REPORTED);
-        if !with_gain {
-            let mut wanted = vec![false; self.grid.len()];
-            let index = |r: &CandidateRecord| self.grid.index(r.cell).unwrap_or(0);
-            records.iter().for_each(|r| wanted[index(r)] = true);
-            self.beams.refresh(&self.cells, &wanted, true);
-            let costs: Vec<f64> = records.iter().map(max_cost_term).collect();
-            records.iter_mut().for_each(|r| r.gain = self.beams.gain(index(r)));
-            self.score().apply(&mut records);
-            records.iter_mut().zip(costs).for_each(|(r, cost_term)| r.cost_term = cost_term);
+        if !self.parameters.strategy.uses_gain() {
+            let all: Vec<usize> = (0..records.len()).collect();
+            self.fill_gains(&mut records, &all, Upto::Gain);
+            let largest = records.iter().map(|r| r.gain).fold(0.0, f64::max);
+            let share = |gain: f64| if largest > 0.0 { gain / largest } else { 0.0 };
+            records.iter_mut().for_each(|r| r.gain_term = share(r.gain));
         }
         records
     }

@@ -14,6 +14,7 @@ use super::tables::{GainTables, OutcomeRows};
 use crate::cells::{Cells, Offsets};
 use crate::{RangeLikelihood, Stencil};
 use covmap_model::SensorModel;
+use pulp::{Simd, WithSimd};
 
 /// Outcomes less likely than this are left out. One outcome gains or loses less than ln n in
 /// each of the beam's cells, so all of them together change a beam's E[I] by less than
@@ -55,18 +56,41 @@ impl FastGain {
         view_point: usize,
         scratch: &mut Scratch,
     ) -> f64 {
-        let likely = |k: &usize| scratch.likelihood.probability(*k) > NEGLIGIBLE;
-        let reach = |k| self.tables.rows(beam, k).covered;
-        let Some(farthest) = (0..self.outcomes).filter(likely).map(reach).max() else { return 0.0 };
+        self.arch.dispatch(BeamGain { fast: self, cells, offsets, beam, view_point, scratch })
+    }
+}
+
+/// One beam's E[I], compiled for each kind of vector registers; all give the same bits.
+struct BeamGain<'a> {
+    fast: &'a FastGain,
+    cells: &'a Cells,
+    offsets: &'a Offsets,
+    beam: usize,
+    view_point: usize,
+    scratch: &'a mut Scratch,
+}
+
+impl WithSimd for BeamGain<'_> {
+    type Output = f64;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> f64 {
+        let Self { fast, cells, offsets, beam, view_point, scratch } = self;
+        let probability = |scratch: &Scratch, k| scratch.likelihood.probability(k);
+        let rows = |k| fast.tables.rows(beam, k);
+        let mut farthest = 0;
+        for k in 0..fast.outcomes {
+            if probability(scratch, k) > NEGLIGIBLE {
+                farthest = farthest.max(rows(k).covered);
+            }
+        }
         scratch.gather(cells, offsets, view_point, farthest);
         let mut expected = 0.0;
-        for k in (0..self.outcomes).filter(|k| scratch.likelihood.probability(*k) > NEGLIGIBLE) {
-            let rows = self.tables.rows(beam, k);
-            let gain = self.arch.dispatch(
-                #[inline(always)]
-                || scratch.outcome_gain(rows, cells.bins()),
-            );
-            expected += scratch.likelihood.probability(k) * gain;
+        for k in 0..fast.outcomes {
+            let p = probability(scratch, k);
+            if p > NEGLIGIBLE {
+                expected += p * scratch.outcome_gain(rows(k), cells.bins());
+            }
         }
         expected
     }
@@ -74,37 +98,41 @@ impl FastGain {
 
 impl Scratch {
     /// Copies the histograms of the first `count` cells of a beam, transposed.
+    #[inline(always)]
     fn gather(&mut self, cells: &Cells, offsets: &Offsets, view_point: usize, count: usize) {
         let (bins, blocks) = (cells.bins(), count.div_ceil(LANES));
-        let nothing = [0.0; LANES];
-        for (lanes, length) in [
-            (&mut self.h, blocks * bins),
-            (&mut self.u, blocks * bins),
-            (&mut self.entropy, blocks),
-            (&mut self.changeable, blocks),
-        ] {
-            lanes.resize(length.max(lanes.len()), nothing);
-        }
+        self.reserve(blocks, bins);
         let bordered = cells.bordered(view_point);
-        for i in 0..blocks * LANES {
-            let (block, lane) = (i / LANES, i % LANES);
-            let changeable =
-                i < count && cells.is_changeable(bordered.wrapping_add_signed(offsets.bordered[i]));
-            self.changeable[block][lane] = f32::from(changeable);
-            if changeable {
-                let index = view_point.wrapping_add_signed(offsets.plain[i]);
-                let (h, u) = cells.row(index);
-                self.entropy[block][lane] = cells.entropy(index);
-                for bin in 0..bins {
-                    self.h[block * bins + bin][lane] = h[bin];
-                    self.u[block * bins + bin][lane] = u[bin];
+        for block in 0..blocks {
+            let h = &mut self.h[block * bins..(block + 1) * bins];
+            let u = &mut self.u[block * bins..(block + 1) * bins];
+            let (entropy, changeable) = (&mut self.entropy[block], &mut self.changeable[block]);
+            for lane in 0..LANES {
+                let i = block * LANES + lane;
+                let at = |i: usize| bordered.wrapping_add_signed(offsets.bordered[i]);
+                if i < count && cells.is_changeable(at(i)) {
+                    let index = view_point.wrapping_add_signed(offsets.plain[i]);
+                    let (from_h, from_u) = cells.row(index);
+                    (entropy[lane], changeable[lane]) = (cells.entropy(index), 1.0);
+                    h.iter_mut().zip(from_h).for_each(|(to, from)| to[lane] = *from);
+                    u.iter_mut().zip(from_u).for_each(|(to, from)| to[lane] = *from);
+                } else {
+                    // Any histogram will do, as long as its numbers are tame.
+                    (entropy[lane], changeable[lane]) = (0.0, 0.0);
+                    h.iter_mut().for_each(|to| to[lane] = 1.0);
+                    u.iter_mut().for_each(|to| to[lane] = 0.0);
                 }
-            } else {
-                // Any histogram will do, as long as its numbers are tame.
-                (0..bins).for_each(|bin| self.h[block * bins + bin][lane] = 1.0);
-                (0..bins).for_each(|bin| self.u[block * bins + bin][lane] = 0.0);
-                self.entropy[block][lane] = 0.0;
             }
+        }
+    }
+
+    fn reserve(&mut self, blocks: usize, bins: usize) {
+        let nothing = [0.0; LANES];
+        if self.changeable.len() < blocks {
+            self.h.resize(blocks * bins, nothing);
+            self.u.resize(blocks * bins, nothing);
+            self.entropy.resize(blocks, nothing);
+            self.changeable.resize(blocks, nothing);
         }
     }
 

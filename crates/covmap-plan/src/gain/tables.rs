@@ -44,7 +44,7 @@ impl GainTables {
     }
 
     /// The rows of outcome `k` of a beam.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn rows(&self, beam: usize, k: usize) -> &OutcomeRows {
         &self.tables[self.table_of_beam[beam]][k]
     }

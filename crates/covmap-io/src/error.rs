@@ -1,0 +1,152 @@
+//! What can be wrong with a file.
+
+use crate::map_server::MapServerError;
+use crate::pgm::PgmError;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Why a file or a folder cannot be used: one sentence that names it.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileError {
+    /// The operating system refused.
+    #[error("{}: cannot be {action}: {source}", path.display())]
+    Io {
+        /// The file or folder.
+        path: PathBuf,
+        /// What was tried: "read", "written", …
+        action: &'static str,
+        /// What the operating system said.
+        source: io::Error,
+    },
+    /// The file is larger than anything of its kind.
+    #[error("{}: has more than {limit} bytes, which is too large for a file of this kind", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// The most that is read \[bytes\].
+        limit: u64,
+    },
+    /// The file is not UTF-8.
+    #[error("{}: is not a text file: byte {at} is not UTF-8", path.display())]
+    NotText {
+        /// The file.
+        path: PathBuf,
+        /// Where the text ends \[bytes from the beginning\].
+        at: usize,
+    },
+    /// Text that does not say what it should: RON, JSON, or YAML.
+    #[error("{}:{line}:{column}: {}{message}", path.display(), in_field(field))]
+    Syntax {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// The column, counted from 1.
+        column: usize,
+        /// The field in which it is, such as `obstacles[3].shape`; empty at the top.
+        field: String,
+        /// What is wrong.
+        message: String,
+    },
+    /// The last line of a file of JSON lines was cut short, as when its writer was stopped.
+    /// All lines before it are whole.
+    #[error("{}:{line}: the last line is cut short", path.display())]
+    Truncated {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+    },
+    /// A line longer than any that is written.
+    #[error("{}:{line}: the line has more than {limit} bytes", path.display())]
+    LongLine {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// The longest line that is read \[bytes\].
+        limit: u64,
+    },
+    /// A value that cannot be written in the format of the file.
+    #[error("{}: cannot be written: {message}", path.display())]
+    Unwritable {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        message: String,
+    },
+    /// The image of a map is not what its header says.
+    #[error("{}: {source}", path.display())]
+    Pgm {
+        /// The image.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: PgmError,
+    },
+    /// The description of a map_server map says something impossible.
+    #[error("{}: {source}", path.display())]
+    MapServer {
+        /// The YAML file.
+        path: PathBuf,
+        /// What is wrong with it.
+        source: MapServerError,
+    },
+    /// The output folder must not be replaced.
+    #[error("{}: {reason}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Why not.
+        reason: &'static str,
+    },
+}
+
+fn in_field(field: &str) -> String {
+    if field.is_empty() { String::new() } else { format!("{field}: ") }
+}
+
+impl FileError {
+    /// The file or folder that it is about.
+    pub fn path(&self) -> &Path {
+        match self {
+            Self::Io { path, .. }
+            | Self::TooLarge { path, .. }
+            | Self::NotText { path, .. }
+            | Self::Syntax { path, .. }
+            | Self::Truncated { path, .. }
+            | Self::LongLine { path, .. }
+            | Self::Unwritable { path, .. }
+            | Self::Pgm { path, .. }
+            | Self::MapServer { path, .. }
+            | Self::Folder { path, .. } => path,
+        }
+    }
+
+    /// Turns the refusal of the operating system into an error that names the file.
+    pub(crate) fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self {
+        let path = path.to_path_buf();
+        move |source| Self::Io { path, action, source }
+    }
+}
+
+/// The path of a field as `serde_path_to_error` found it; empty at the top.
+pub(crate) fn field_name(path: &serde_path_to_error::Path) -> String {
+    let name = path.to_string();
+    if name == "." { String::new() } else { name }
+}
+
+/// A message of another library as part of one sentence: on one line, without a capital and
+/// a full stop.
+pub(crate) fn one_line(message: &str) -> String {
+    let words: Vec<&str> = message.split_whitespace().collect();
+    let line = words.join(" ");
+    let line = line.trim_end_matches('.');
+    let mut chars = line.chars();
+    match (chars.next(), chars.clone().next()) {
+        (Some(first), Some(second)) if second.is_lowercase() => {
+            first.to_lowercase().chain(chars).collect()
+        }
+        _ => line.to_string(),
+    }
+}
