@@ -112,44 +112,52 @@ impl BeamCache {
         self.flags[slots].iter_mut().for_each(|flags| *flags |= GAIN | BOUND);
     }
 
-    /// Brings the values of the wanted view-points up to date.
-    pub(crate) fn refresh(&mut self, cells: &Cells, wanted: &[bool], upto: Upto) {
+    /// Brings the values of view-points up to date.
+    ///
+    /// `least` tells for each view-point the gain that it needs to matter: infinite where
+    /// nothing is wanted. Where the beams evaluated so far show that a view-point stays below,
+    /// the rest of its beams keep their bounds.
+    pub(crate) fn refresh(&mut self, cells: &Cells, least: &[f64], upto: Upto) {
         let beams = self.stencil.beams.len();
-        let Self { stencil, offsets, uniform_share, fast, in_sight, horizon, flags, gain, .. } =
-            self;
-        let view_points = flags
+        let (stencil, offsets, fast) = (&self.stencil, &self.offsets, &self.fast);
+        let view_points = self
+            .flags
             .par_chunks_mut(beams)
-            .zip(in_sight.par_chunks_mut(beams))
-            .zip(horizon.par_chunks_mut(beams))
-            .zip(gain.par_chunks_mut(beams))
+            .zip(self.in_sight.par_chunks_mut(beams))
+            .zip(self.horizon.par_chunks_mut(beams))
+            .zip(self.gain.par_chunks_mut(beams))
             .enumerate()
             .with_min_len(16);
+        let uniform_share = self.uniform_share;
         view_points.for_each_init(
             Scratch::default,
             |scratch, (view_point, (((flags, in_sight), horizon), gain))| {
-                if !wanted[view_point] {
+                let least = least[view_point];
+                let wanted = least < f64::INFINITY && flags.iter().any(|f| f & upto.flags() != 0);
+                if !wanted {
                     return;
                 }
-                for beam in 0..beams {
+                for (beam, cone) in stencil.beams.iter().enumerate() {
                     if flags[beam] & upto.flags() == 0 {
                         continue;
                     }
-                    let looks = Look { cells, offsets: &offsets[beam], view_point };
-                    let cone = &stencil.beams[beam];
-                    looks.ahead(cone, *uniform_share, &mut scratch.likelihood);
+                    if upto == Upto::Gain && mean(gain) < least {
+                        return;
+                    }
+                    let look = Look { cells, offsets: &offsets[beam], view_point };
+                    look.ahead(cone, uniform_share, &mut scratch.likelihood);
                     if flags[beam] & SIGHT != 0 {
                         let seen = scratch.likelihood.cells_in_sight(cone);
-                        let reason = if looks.holds_reason(seen) { REASON } else { 0 };
+                        let reason = if look.holds_reason(seen) { REASON } else { 0 };
                         flags[beam] = flags[beam] & !(SIGHT | REASON) | reason;
                         in_sight[beam] = rank(seen);
                         horizon[beam] = rank(dependency(cone, &scratch.likelihood));
                     }
                     if upto == Upto::Gain && flags[beam] & GAIN != 0 {
-                        gain[beam] =
-                            fast.beam_gain(cells, looks.offsets, beam, view_point, scratch);
+                        gain[beam] = fast.beam_gain(cells, look.offsets, beam, view_point, scratch);
                         flags[beam] &= !(GAIN | BOUND);
                     } else if upto == Upto::Bound && flags[beam] & BOUND != 0 {
-                        gain[beam] = looks.gain_bound(cone, &scratch.likelihood);
+                        gain[beam] = look.gain_bound(cone, &scratch.likelihood);
                         flags[beam] &= !BOUND;
                     }
                 }
@@ -169,9 +177,7 @@ impl BeamCache {
 
     /// E[I(l)] of a view-point that is up to date, or an upper bound of it \[nats\].
     pub(crate) fn gain(&self, view_point: usize) -> f64 {
-        #[allow(clippy::cast_precision_loss, reason = "few beams")]
-        let beams = self.stencil.beams.len() as f64;
-        self.slots(view_point).map(|slot| self.gain[slot]).sum::<f64>() / beams
+        mean(&self.gain[self.slots(view_point)])
     }
 
     /// V(l) of a view-point that is up to date: cells by their row-major index, with their
@@ -251,6 +257,13 @@ impl Look<'_> {
 #[allow(clippy::cast_possible_truncation, reason = "a planner refuses beams of more cells")]
 fn rank(count: usize) -> u16 {
     count as u16
+}
+
+/// The average over the beams.
+fn mean(gains: &[f64]) -> f64 {
+    #[allow(clippy::cast_precision_loss, reason = "few beams")]
+    let beams = gains.len() as f64;
+    gains.iter().sum::<f64>() / beams
 }
 
 /// How many of a beam's cells decide its sight and its gain: those that may reflect, and

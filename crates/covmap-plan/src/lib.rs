@@ -21,6 +21,7 @@
 mod beam_cache;
 mod cells;
 mod decision;
+mod evaluate;
 mod exploration;
 mod gain;
 mod parameters;

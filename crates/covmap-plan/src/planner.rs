@@ -3,6 +3,7 @@
 use crate::beam_cache::{BeamCache, Upto};
 use crate::cells::Cells;
 use crate::decision::{Score, best};
+use crate::evaluate::{Evaluation, REPORTED};
 use crate::exploration::{CountedScan, Exploration};
 use crate::traversable::Traversable;
 use crate::window::Window;
@@ -18,10 +19,6 @@ use nalgebra::Point2;
 /// The fast evaluation of E[I] is within this of the literal one, in units of the largest
 /// absolute gain of the decision; candidates closer to the best are decided by the latter.
 pub const GAIN_TOLERANCE: f64 = 1e-5;
-/// How many candidates a decision reports.
-const REPORTED: usize = 5;
-/// How many candidates are evaluated at once, at first.
-const BATCH: usize = 32;
 
 /// Chooses view-points by the strategies of section 4, and knows when all is explored.
 ///
@@ -216,9 +213,9 @@ impl Planner {
     /// total probability of at least ½.
     pub fn cells_in_sight(&mut self, view_point: Cell) -> Vec<(usize, f32)> {
         let Some(index) = self.grid.index(view_point) else { return Vec::new() };
-        let mut wanted = vec![false; self.grid.len()];
-        wanted[index] = true;
-        self.beams.refresh(&self.cells, &wanted, Upto::Sight);
+        let mut least = vec![f64::INFINITY; self.grid.len()];
+        least[index] = f64::NEG_INFINITY;
+        self.beams.refresh(&self.cells, &least, Upto::Sight);
         self.beams.cells_in_sight(index)
     }
 
@@ -234,10 +231,11 @@ impl Planner {
     /// L(c) and the ways there, for a robot in the cell `from`.
     fn candidates(&mut self, from: Cell) -> Candidates {
         let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
-        let mut reachable = vec![false; self.grid.len()];
-        costs.reached().for_each(|index| reachable[index] = true);
-        self.beams.refresh(&self.cells, &reachable, Upto::Sight);
-        let is_candidate = |i: &usize| reachable[*i] && self.beams.has_reason(*i);
+        let mut least = vec![f64::INFINITY; self.grid.len()];
+        costs.reached().for_each(|index| least[index] = f64::NEG_INFINITY);
+        let upto = if self.parameters.strategy.uses_gain() { Upto::Bound } else { Upto::Sight };
+        self.beams.refresh(&self.cells, &least, upto);
+        let is_candidate = |i: &usize| costs.cost(*i).is_some() && self.beams.has_reason(*i);
         Candidates { indices: (0..self.grid.len()).filter(is_candidate).collect(), costs }
     }
 
@@ -254,18 +252,19 @@ impl Planner {
         candidates.indices.iter().map(record).collect()
     }
 
-    /// Fills in the gains of some records, up to date as far as asked.
-    fn fill_gains(&mut self, records: &mut [CandidateRecord], which: &[usize], upto: Upto) {
-        let mut wanted = vec![false; self.grid.len()];
-        let index = |r: &CandidateRecord| self.grid.index(r.cell).unwrap_or(0);
-        for i in which {
-            wanted[index(&records[*i])] = true;
-            if !self.parameters.strategy.uses_gain() {
-                self.beams.forget_gain(index(&records[*i]));
-            }
+    fn evaluation(&mut self) -> Evaluation<'_> {
+        let score = self.score();
+        Evaluation { grid: &self.grid, cells: &self.cells, beams: &mut self.beams, score }
+    }
+
+    /// Fills in the gains of all records. A strategy without gains does not keep them up to
+    /// date, so they are forgotten first.
+    fn fill_gains(&mut self, records: &mut [CandidateRecord]) {
+        if !self.parameters.strategy.uses_gain() {
+            let indices = records.iter().filter_map(|r| self.grid.index(r.cell));
+            indices.for_each(|index| self.beams.forget_gain(index));
         }
-        self.beams.refresh(&self.cells, &wanted, upto);
-        which.iter().for_each(|i| records[*i].gain = self.beams.gain(index(&records[*i])));
+        self.evaluation().all(records);
     }
 
     /// Every candidate for a robot in the cell `from`, with gains and scores, in row-major
@@ -273,50 +272,9 @@ impl Planner {
     pub fn candidate_table(&mut self, from: Cell) -> Vec<CandidateRecord> {
         let candidates = self.candidates(from);
         let mut records = self.records(&candidates);
-        let all: Vec<usize> = (0..records.len()).collect();
-        self.fill_gains(&mut records, &all, Upto::Gain);
+        self.fill_gains(&mut records);
         self.score().apply(&mut records);
         records
-    }
-
-    /// Computes gains and scores until the five best are exact, and all that could be among
-    /// them: candidates are evaluated in the order of upper bounds, and those that cannot
-    /// matter keep theirs.
-    fn evaluate(&mut self, records: &mut [CandidateRecord]) {
-        let score = self.score();
-        let all: Vec<usize> = (0..records.len()).collect();
-        self.fill_gains(records, &all, Upto::Bound);
-        for rank in [|r: &CandidateRecord| r.gain, |r: &CandidateRecord| r.score] {
-            // First the largest gain, by which Eq. (16) divides, then the best scores.
-            for batch in (0..).map(|round| BATCH << round.min(8)) {
-                score.apply(records);
-                let inexact = self.could_matter(records, rank, score);
-                if inexact.is_empty() {
-                    break;
-                }
-                self.fill_gains(records, &inexact[..batch.min(inexact.len())], Upto::Gain);
-            }
-        }
-    }
-
-    /// The candidates without an exact gain that may belong to the best, best first.
-    fn could_matter(
-        &self,
-        records: &[CandidateRecord],
-        rank: fn(&CandidateRecord) -> f64,
-        score: Score,
-    ) -> Vec<usize> {
-        let is_exact =
-            |r: &CandidateRecord| self.beams.is_exact(self.grid.index(r.cell).unwrap_or(0));
-        let (exact, mut inexact): (Vec<usize>, Vec<usize>) =
-            (0..records.len()).partition(|i| is_exact(&records[*i]));
-        let mut known: Vec<f64> = exact.iter().map(|i| rank(&records[*i])).collect();
-        known.sort_by(|a, b| b.total_cmp(a));
-        let doubt = 4.0 * score.uncertainty(records, GAIN_TOLERANCE);
-        let enough = known.get(REPORTED - 1).map_or(f64::NEG_INFINITY, |worst| worst - doubt);
-        inexact.retain(|i| rank(&records[*i]) >= enough);
-        inexact.sort_by(|a, b| rank(&records[*b]).total_cmp(&rank(&records[*a])).then(a.cmp(b)));
-        inexact
     }
 
     fn score(&self) -> Score {
@@ -334,7 +292,7 @@ impl Planner {
         let with_gain = self.parameters.strategy.uses_gain();
         let mut records = self.records(&candidates);
         if with_gain {
-            self.evaluate(&mut records);
+            self.evaluation().best(&mut records);
         }
         self.score().apply(&mut records);
         let decided_by_oracle = if with_gain { self.decide_ties(map, &mut records) } else { 0 };
@@ -353,8 +311,7 @@ impl Planner {
         records.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell)));
         records.truncate(REPORTED);
         if !self.parameters.strategy.uses_gain() {
-            let all: Vec<usize> = (0..records.len()).collect();
-            self.fill_gains(&mut records, &all, Upto::Gain);
+            self.fill_gains(&mut records);
             let largest = records.iter().map(|r| r.gain).fold(0.0, f64::max);
             let share = |gain: f64| if largest > 0.0 { gain / largest } else { 0.0 };
             records.iter_mut().for_each(|r| r.gain_term = share(r.gain));

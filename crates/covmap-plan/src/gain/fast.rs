@@ -21,6 +21,21 @@ use pulp::{Simd, WithSimd};
 /// (K + 2) · cells · ln n times this: some 1e-8 nats for a sonar.
 const NEGLIGIBLE: f64 = 1e-10;
 
+/// 1 for the first so many lanes, 0 for the others.
+const COVERED: [Lanes; LANES + 1] = {
+    let mut masks = [[0.0; LANES]; LANES + 1];
+    let mut count = 0;
+    while count <= LANES {
+        let mut lane = 0;
+        while lane < count {
+            masks[count][lane] = 1.0;
+            lane += 1;
+        }
+        count += 1;
+    }
+    masks
+};
+
 /// The histograms of one beam's cells, block by block.
 #[derive(Debug, Default)]
 pub(crate) struct Scratch {
@@ -97,8 +112,9 @@ impl WithSimd for BeamGain<'_> {
 }
 
 impl Scratch {
-    /// Copies the histograms of the first `count` cells of a beam, transposed.
-    #[inline(always)]
+    /// Copies the histograms of the first `count` cells of a beam, transposed. Not inlined:
+    /// with wide registers the compiler would scatter, at twice the time.
+    #[inline(never)]
     fn gather(&mut self, cells: &Cells, offsets: &Offsets, view_point: usize, count: usize) {
         let (bins, blocks) = (cells.bins(), count.div_ceil(LANES));
         self.reserve(blocks, bins);
@@ -140,25 +156,24 @@ impl Scratch {
     #[inline(always)]
     fn outcome_gain(&self, rows: &OutcomeRows, bins: usize) -> f64 {
         let mut sum = [0.0f32; LANES];
-        let blocks = rows.covered.div_ceil(LANES);
-        for block in 0..blocks {
-            let range = block * bins..(block + 1) * bins;
+        let posterior = self.h.chunks_exact(bins).zip(self.u.chunks_exact(bins));
+        let evidence = rows.t.chunks_exact(bins).zip(rows.v.chunks_exact(bins));
+        let before = self.entropy.iter().zip(&self.changeable);
+        let mut left = rows.covered;
+        for (((h, u), (t, v)), (entropy, changeable)) in posterior.zip(evidence).zip(before) {
             let (mut z, mut s) = ([0.0f32; LANES], [0.0f32; LANES]);
-            let posterior = self.h[range.clone()].iter().zip(&self.u[range.clone()]);
-            for ((h, u), (t, v)) in posterior.zip(rows.t[range.clone()].iter().zip(&rows.v[range]))
-            {
+            for ((h, u), (t, v)) in h.iter().zip(u).zip(t.iter().zip(v)) {
                 for lane in 0..LANES {
                     z[lane] += h[lane] * t[lane];
                     s[lane] += u[lane] * t[lane] + h[lane] * v[lane];
                 }
             }
-            let log_z = ln(&z);
-            let covered = rows.covered - block * LANES;
+            let (log_z, covered) = (ln(&z), &COVERED[left.min(LANES)]);
             for lane in 0..LANES {
                 let after = log_z[lane] - s[lane] / z[lane];
-                let counts = if lane < covered { self.changeable[block][lane] } else { 0.0 };
-                sum[lane] += counts * (self.entropy[block][lane] - after);
+                sum[lane] += covered[lane] * changeable[lane] * (entropy[lane] - after);
             }
+            left = left.saturating_sub(LANES);
         }
         sum.iter().map(|g| f64::from(*g)).sum()
     }
