@@ -69,12 +69,13 @@ pub enum ConfigError {
 }
 
 impl Config {
-    /// The default: a B21r, r = .1 m, 3 m usable range, ε = .6, IG_CL(.3).
+    /// The default: a B21r, r = .1 m, 3 m usable range, ε = .6, IG_CL(.3), and cones that
+    /// shrink from a half-angle of 12.5° near the sensor to 7.5° at 2.9 m.
     pub fn b21r() -> Self {
         Self {
             resolution: 0.1,
             robot: RobotParameters { radius: 0.27, speed: 0.5, ring: RingSpecification::B21r },
-            sonar: SonarPhysics::b21r(),
+            sonar: SonarPhysics { cone_shrink_per_metre: 0.03, ..SonarPhysics::b21r() },
             model: ModelParameters::b21r(),
             planner: PlannerParameters::standard(),
         }

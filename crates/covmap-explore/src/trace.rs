@@ -118,6 +118,11 @@ impl TraceHasher {
         self.0.update(b"\n");
     }
 
+    /// Adds bytes that are no line of the trace, such as those of the belief.
+    pub fn add_bytes(&mut self, bytes: &[u8]) {
+        self.0.update(bytes);
+    }
+
     /// The hash as a hexadecimal number.
     pub fn finish(self) -> String {
         let mut text = String::new();

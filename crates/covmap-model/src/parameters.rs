@@ -127,13 +127,14 @@ pub enum ModelError {
 }
 
 impl ModelParameters {
-    /// A B21r's sonars, not fitted yet: 11 bins, 3 m usable range, the paper's 20 cm.
+    /// A B21r's sonars: 11 bins, 3 m usable range, the paper's 20 cm. Chosen by hand on small
+    /// simulated worlds, not fitted.
     pub fn b21r() -> Self {
         Self {
             bins: 11,
             usable_range: 3.0,
-            sigma_out: Linear { base: 0.12, per_cell_distance: 0.02, per_range: 0.02 },
-            sigma_in: 0.35,
+            sigma_out: Linear { base: 0.06, per_cell_distance: 0.015, per_range: 0.015 },
+            sigma_in: 0.2,
             gamma: Linear { base: 0.1, per_cell_distance: 0.1, per_range: 0.1 },
             behind: 0.20,
             no_echo: NoEchoParameters { range: 1.0, gamma: 1.0 },

@@ -216,7 +216,7 @@ mod tests {
 
     #[test]
     fn a_model_that_breaks_the_papers_constraints_is_refused() {
-        assert!(matches!(refuse(|p| p.sigma_in = 0.2), ModelError::SigmaIn { .. }));
+        assert!(matches!(refuse(|p| p.sigma_in = 0.15), ModelError::SigmaIn { .. }));
         assert!(matches!(
             refuse(|p| p.sigma_out.base = 0.03),
             ModelError::SigmaBelowHalfBin { .. }

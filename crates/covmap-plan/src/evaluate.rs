@@ -115,7 +115,12 @@ impl Evaluation<'_> {
         upto: Upto,
     ) {
         let mut least = vec![f64::INFINITY; self.grid.len()];
-        which.iter().for_each(|i| least[self.index(&records[*i])] = needed[*i]);
+        for i in which {
+            // What a record has now must not count as too little by rounding: each call
+            // evaluates at least one beam of each, so that this ends.
+            let has = records[*i].gain;
+            least[self.index(&records[*i])] = needed[*i].min(has - 1e-9 * has.abs());
+        }
         self.beams.refresh(self.cells, &least, upto);
         which.iter().for_each(|i| records[*i].gain = self.beams.gain(self.index(&records[*i])));
     }

@@ -74,7 +74,10 @@ impl Exploration {
         outside: &Raster<bool>,
     ) -> Self {
         #[allow(clippy::cast_possible_truncation, reason = "distances are compared as f32")]
-        let limit = usable_range as f32;
+        let limit = match parameters.stall_rule {
+            StallRule::Banded { first, .. } => first.min(usable_range) as f32,
+            StallRule::Unbanded | StallRule::Literal => usable_range as f32,
+        };
         let fresh = Progress {
             limit,
             lowest: f32::INFINITY,
@@ -193,7 +196,7 @@ impl Progress {
     fn next_band(&mut self, rule: StallRule) {
         #[allow(clippy::cast_possible_truncation, reason = "distances are compared as f32")]
         let closest = match rule {
-            StallRule::Banded { closest } => closest as f32,
+            StallRule::Banded { closest, .. } => closest as f32,
             StallRule::Unbanded | StallRule::Literal => f32::INFINITY,
         };
         self.limit = 0.5 * self.nearest.min(self.limit);

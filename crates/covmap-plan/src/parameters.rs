@@ -12,6 +12,8 @@ pub enum StallRule {
     /// border jitters between two bins for ever, and looks from afar say little: with bands
     /// runs end, provably, and no cell is given up for having been looked at from afar.
     Banded {
+        /// The first band: a cell is a reason to measure from no farther than this \[m\].
+        first: f64,
         /// The distance below which there is no further band \[m\].
         closest: f64,
     },
@@ -103,7 +105,7 @@ impl PlannerParameters {
             entropy_threshold: 0.6,
             min_entropy_change: 0.001,
             stall_limit: 5,
-            stall_rule: StallRule::Banded { closest: 0.5 },
+            stall_rule: StallRule::Banded { first: 3.0, closest: 0.5 },
             max_counted_scans: 520,
             scope: Scope::Observable,
             traversable_coverage: 0.2,
@@ -123,7 +125,8 @@ impl PlannerParameters {
         within("entropy_threshold", self.entropy_threshold, 0.0, 5.0)?;
         within("min_entropy_change", self.min_entropy_change, 1e-6, 1.0)?;
         within("stall_limit", f64::from(self.stall_limit), 1.0, 1000.0)?;
-        if let StallRule::Banded { closest } = self.stall_rule {
+        if let StallRule::Banded { first, closest } = self.stall_rule {
+            within("stall_rule.first", first, closest, 100.0)?;
             within("stall_rule.closest", closest, 1e-2, 100.0)?;
         }
         within("max_counted_scans", f64::from(self.max_counted_scans), 1.0, 1e6)?;

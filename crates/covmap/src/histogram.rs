@@ -10,7 +10,7 @@ pub const MAX_BINS: usize = 64;
 ///
 /// Choice: the paper has no floor. With it every logarithm is finite and evidence can turn
 /// a cell round however sure it was.
-pub const PROBABILITY_FLOOR: f64 = 1e-20;
+pub const PROBABILITY_FLOOR: f64 = 1e-6;
 
 /// The coverage at which bin `bin` of `bins` stands: `bin / (bins − 1)`.
 ///
