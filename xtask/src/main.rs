@@ -1,2 +1,41 @@
-//! The one program of covmap.
-fn main() {}
+//! The one program of covmap: explores worlds and writes what came out.
+//!
+//! `cargo xtask help` says what it can do. All that computes is in the crates; here are
+//! arguments, files, the terminal, the clock and Ctrl-C.
+#![allow(clippy::print_stdout, reason = "a program talks to its user")]
+
+mod arguments;
+mod csv_file;
+mod explain;
+mod explain_picture;
+mod explore;
+mod input;
+mod interrupt;
+mod model;
+mod pictures;
+mod progress;
+mod replay;
+mod results;
+mod say;
+mod trace_file;
+mod truth;
+
+use arguments::{Arguments, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+/// What the program ends with after bad input; clap ends with the same.
+const BAD_INPUT: u8 = 2;
+
+fn main() -> ExitCode {
+    let done = match Arguments::parse().command {
+        Command::Explore(arguments) => explore::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
+        Command::Truth(arguments) => truth::run(&arguments),
+        Command::Model(arguments) => model::run(&arguments),
+    };
+    done.unwrap_or_else(|error| {
+        say::error(&error);
+        ExitCode::from(BAD_INPUT)
+    })
+}

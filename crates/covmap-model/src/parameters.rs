@@ -133,9 +133,9 @@ impl ModelParameters {
         Self {
             bins: 11,
             usable_range: 3.0,
-            sigma_out: Linear { base: 0.06, per_cell_distance: 0.015, per_range: 0.015 },
-            sigma_in: 0.2,
-            gamma: Linear { base: 0.1, per_cell_distance: 0.1, per_range: 0.1 },
+            sigma_out: Linear { base: 0.06, per_cell_distance: 0.02, per_range: 0.02 },
+            sigma_in: 0.22,
+            gamma: Linear { base: 0.05, per_cell_distance: 0.05, per_range: 0.05 },
             behind: 0.20,
             no_echo: NoEchoParameters { range: 1.0, gamma: 1.0 },
             tempering: 1.0,

@@ -12,7 +12,9 @@ pub enum StallRule {
     /// border jitters between two bins for ever, and looks from afar say little: with bands
     /// runs end, provably, and no cell is given up for having been looked at from afar.
     Banded {
-        /// The first band: a cell is a reason to measure from no farther than this \[m\].
+        /// The first band: a cell is a reason to measure from no farther than this \[m\], and
+        /// never farther than the usable range. Below that, a robot does not measure again and
+        /// again from afar what a few scans from nearby settle, and settle better.
         first: f64,
         /// The distance below which there is no further band \[m\].
         closest: f64,
@@ -105,7 +107,7 @@ impl PlannerParameters {
             entropy_threshold: 0.6,
             min_entropy_change: 0.001,
             stall_limit: 5,
-            stall_rule: StallRule::Banded { first: 3.0, closest: 0.5 },
+            stall_rule: StallRule::Banded { first: 1.0, closest: 0.5 },
             max_counted_scans: 520,
             scope: Scope::Observable,
             traversable_coverage: 0.2,

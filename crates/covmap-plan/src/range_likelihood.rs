@@ -35,6 +35,7 @@ pub fn reflection(map: &CoverageMap, cell: Cell, unknown: f64) -> f64 {
 /// `uniform_share` is η. Reading: the paper says "a ray-tracing technique similar to Moravec
 /// and Elfes using the current maximum likelihood coverage map"; on a map of zeros and ones
 /// along one ray this is its first hit.
+#[inline]
 pub fn range_likelihood(
     beam: &BeamStencil,
     uniform_share: f64,
@@ -51,8 +52,8 @@ pub fn range_likelihood(
         let mut q = 0.0;
         if survival > 0.0 {
             out.traced += 1;
-            for i in ring.clone() {
-                q += beam.cells[i].weight * reflection(i);
+            for (i, weight) in ring.clone().zip(&beam.weights[ring.clone()]) {
+                q += weight * reflection(i);
             }
             // The weights sum to 1 but for rounding.
             q = if q > 1.0 - 1e-12 { 1.0 } else { q };

@@ -15,8 +15,6 @@ pub struct StencilCell {
     pub dy: i32,
     /// d^l, distance from the sensor \[m\].
     pub cell_distance: f64,
-    /// w_i, its share of the angular width of its ring; those of a ring sum to 1.
-    pub weight: f64,
 }
 
 /// One beam's cells in order of their distance from the sensor, so that the cells C(l, d)
@@ -25,6 +23,8 @@ pub struct StencilCell {
 pub struct BeamStencil {
     /// The cells.
     pub cells: Vec<StencilCell>,
+    /// w_i, each cell's share of the angular width of its ring; those of a ring sum to 1.
+    pub weights: Vec<f64>,
     /// S_k: the cells at the range d_k = k·r, |d^l − d_k| ≤ r/2.
     pub rings: Vec<Range<usize>>,
     /// How many cells an echo from d_k covers.
@@ -94,7 +94,7 @@ fn beams_around(model: &SensorModel, heading: f64, ranges: &[f64]) -> Vec<BeamSt
         model.footprint().for_each_cell(&grid, &pose, beam, model.max_reach(), |c| {
             let Cell { x, y } = c.cell;
             let cell_distance = (c.cell_distance / DISTANCE_STEP).round() * DISTANCE_STEP;
-            cells.push(StencilCell { dx: x - half, dy: y - half, cell_distance, weight: 0.0 });
+            cells.push(StencilCell { dx: x - half, dy: y - half, cell_distance });
         });
         beam_stencil(model, cells, ranges)
     };
@@ -112,13 +112,13 @@ fn beam_stencil(model: &SensorModel, mut cells: Vec<StencilCell>, ranges: &[f64]
         ranges.iter().map(|d| nearer_than(d - 0.5 * r)..nearer_than(d + 0.5 * r)).collect();
     let echo_reach = ranges.iter().map(|d| within(model.reach(Outcome::Echo(*d)))).collect();
     let no_echo_reach = within(model.reach(Outcome::NoEcho));
+    // A cell's angular width is its side over its distance.
+    let mut weights: Vec<f64> = cells.iter().map(|c| 1.0 / c.cell_distance.max(r)).collect();
     for ring in &rings {
-        // A cell's angular width is its side over its distance.
-        let width = |c: &StencilCell| 1.0 / c.cell_distance.max(r);
-        let sum: f64 = cells[ring.clone()].iter().map(width).sum();
-        cells[ring.clone()].iter_mut().for_each(|c| c.weight = width(c) / sum);
+        let sum: f64 = weights[ring.clone()].iter().sum();
+        weights[ring.clone()].iter_mut().for_each(|w| *w /= sum);
     }
-    BeamStencil { cells, rings, echo_reach, no_echo_reach }
+    BeamStencil { cells, weights, rings, echo_reach, no_echo_reach }
 }
 
 #[cfg(test)]
@@ -149,7 +149,7 @@ mod tests {
         let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.2).unwrap();
         for beam in Stencil::new(&model, 0.0).beams {
             for ring in beam.rings.iter().filter(|ring| !ring.is_empty()) {
-                let sum: f64 = beam.cells[ring.clone()].iter().map(|c| c.weight).sum();
+                let sum: f64 = beam.weights[ring.clone()].iter().sum();
                 assert!((sum - 1.0).abs() < 1e-12);
             }
             assert!(

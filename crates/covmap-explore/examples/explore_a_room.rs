@@ -1,0 +1,53 @@
+//! Explores a room with a pillar to its end, and counts what the certificate says.
+//!
+//! ```text
+//! cargo run -p covmap-explore --example explore_a_room
+//! ```
+#![allow(clippy::print_stdout, reason = "an example prints")]
+
+use covmap_explore::{CellCounts, Config, Event, Limits, Mission, SimulatedRobot, explore};
+use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
+use std::error::Error;
+use std::io::Write;
+use std::ops::ControlFlow;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let mut config = Config::b21r();
+    config.resolution = 0.2;
+    let scenario = Scenario {
+        name: "room".into(),
+        extent: Extent { width: 4.0, height: 3.0 },
+        start: None,
+        obstacles: vec![Obstacle {
+            shape: Shape::Circle { center: (2.6, 1.6), radius: 0.3 },
+            surface: Surface::Rough,
+        }],
+    };
+    let world = World::from_scenario(&scenario, config.sonar.surface)?;
+    let mission = Mission::new(&world, &config, None, Limits::default())?;
+    let mut robot = SimulatedRobot::new(&world, &config, 1)?;
+
+    // All that happens comes by here; `ControlFlow::Break` would end the run.
+    let run = explore(&mission, &mut robot, &mut |event, view| {
+        if let Event::Decision { decision, .. } = event {
+            print!(
+                "\r{:>4} scans, {:>5.1} m, {:>3} candidates, {:>5.1} % of the known cells finished",
+                view.scans,
+                view.path_length,
+                decision.candidates,
+                100.0 * view.planner.share_finished(view.map)
+            );
+            let _ = std::io::stdout().flush();
+        }
+        ControlFlow::Continue(())
+    })?;
+
+    let cells = CellCounts::of(run.certificate.values());
+    println!("\n{:?} after {} scans and {:.1} m", run.ending, run.scans.len(), run.path_length);
+    println!("  {:>4} cells are resolved: known, with an entropy of at most ε", cells.resolved);
+    println!("  {:>4} are exhausted: their entropy did not fall any longer", cells.exhausted);
+    println!("  {:>4} are open", cells.open);
+    println!("  {:>4} are unreachable: out of sight of all that can be reached", cells.unreachable);
+    println!("  {:>4} are outside the extent", cells.outside);
+    Ok(())
+}

@@ -1,0 +1,22 @@
+//! The workflow as a whole, in one binary: the shipped files, and the house they live in.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod architecture;
+mod shipped_files;
+
+use std::path::{Path, PathBuf};
+
+/// The root of the workspace.
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
+}
+
+/// The files of a folder of the workspace with an extension, sorted.
+fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(root().join(folder)).unwrap();
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.retain(|path| path.extension().is_some_and(|found| found == extension));
+    paths.sort();
+    assert!(!paths.is_empty(), "{folder} has no .{extension}");
+    paths
+}

@@ -1,0 +1,186 @@
+//! What can be typed.
+
+use clap::{Args, Parser, Subcommand};
+use covmap_plan::Strategy;
+use nalgebra::{Isometry2, Vector2};
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+  0    explored: no cell is open (explore); done (the others)
+  2    bad input: an argument or a file, or a folder that cannot be written
+  3    the budget of scans is spent (--max-scans)
+  4    the robot could not leave its start
+  130  interrupted with Ctrl-C; what there was is written all the same";
+
+const EXPLORE_EXAMPLES: &str = "\
+The folder that is written:
+  summary.json              the numbers of the run
+  trace.jsonl               every scan and every decision, a line each
+  belief.bin                the whole posterior of every cell
+  map.pgm, map.yaml         the map for ROS map_server
+  coverage.png              the most likely coverage, with the path
+  entropy.png               what is left uncertain
+  truth.png                 the exact coverage of every cell
+  occupancy.png             the log-odds occupancy grid of the same scans
+  certificate.png           why there is nothing left to do, cell by cell
+It is DIR.partial while it is being written, with a valid trace at any time. A DIR that
+covmap wrote is replaced whole; any other is refused.
+
+Examples:
+  cargo xtask explore scenarios/office.ron
+  cargo xtask explore scenarios/lab.ron --strategy IG --resolution 0.2 --seed 7
+  cargo xtask explore building.yaml --config configs/sonar8.ron --start 12.5,-3,90
+  cargo xtask explore scenarios/hall.ron --while-driving 0.5 --max-scans 200 --out out/hall
+";
+
+const EXPLAIN_EXAMPLES: &str = "\
+The trace is replayed up to the decision; then the gains of all candidates are computed. The
+five best are printed with both terms of Eq. (16), and DIR/explain-N.png shows E[I] over all
+candidates, the five best, and the way to the one that was chosen.
+
+Example:
+  cargo xtask explain out/office-IG_CL-0.3-1 --step 12
+";
+
+const TRUTH_EXAMPLES: &str = "\
+Columns: x, y (the centre of the cell, in metres), coverage (in [0, 1], exact). Row by row from
+the lower left, on the grid that `explore` uses, with its margin around the world.
+
+Example:
+  cargo xtask truth scenarios/office.ron --resolution 0.05 --out truth.csv
+";
+
+const MODEL_EXAMPLES: &str = "\
+Columns: cell_distance (from the sensor, in metres), coverage (of each bin), probability (that
+the cell has it, Eq. 9). From r/2 to the last cell that an echo updates, in steps of r/10.
+
+Example:
+  cargo xtask model --range 1.0 --out model.csv
+";
+
+/// Explores unknown environments with coverage maps (Stachniss & Burgard, 2003).
+///
+/// A simulated robot with a ring of sonars explores a world until a certificate says of every
+/// cell why there is nothing left to do.
+#[derive(Debug, Parser)]
+#[command(name = "xtask", bin_name = "cargo xtask", version, after_help = EXIT_CODES)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Explores a world to its end, and writes the map, the pictures and the numbers.
+    #[command(after_help = format!("{EXPLORE_EXAMPLES}\n{EXIT_CODES}"))]
+    Explore(Explore),
+    /// Says and draws why a decision of a run was taken.
+    #[command(after_help = EXPLAIN_EXAMPLES)]
+    Explain(Explain),
+    /// Writes the exact coverage of every cell of a world.
+    #[command(after_help = TRUTH_EXAMPLES)]
+    Truth(Truth),
+    /// Writes what the sensor model makes of one echo: the numbers of Fig. 3.
+    #[command(after_help = MODEL_EXAMPLES)]
+    Model(Model),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Explore {
+    /// A scenario (.ron), or a map of ROS map_server (.yaml with its .pgm)
+    pub(crate) world: PathBuf,
+    /// Robot, sonar, sensor model and planner [default: configs/b21r.ron, built in]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) config: Option<PathBuf>,
+    /// How view-points are chosen: CL, IG, IG_WIN:R (radius in metres), IG_CL:A (weight of the
+    /// gain), COUNT:N (scans), COUNT:N:D0 (metres) [default: as the configuration says,
+    /// IG_CL:0.3]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) strategy: Option<Strategy>,
+    /// Seed of the noise
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Side of a cell in metres [default: as the configuration says, 0.1]
+    #[arg(long, value_name = "M", value_parser = resolution)]
+    pub(crate) resolution: Option<f64>,
+    /// Measure also on the way, every so many metres [default: at view-points only]
+    #[arg(long, value_name = "M", value_parser = while_driving)]
+    pub(crate) while_driving: Option<f64>,
+    /// End after so many scans [default: no limit]
+    #[arg(long, value_name = "N")]
+    pub(crate) max_scans: Option<NonZeroUsize>,
+    /// Where the robot starts: metres, metres, and degrees counter-clockwise from the x axis
+    /// [default: where the scenario says, or in the roomiest place]
+    #[arg(long, value_name = "X,Y,DEG", value_parser = start, allow_hyphen_values = true)]
+    pub(crate) start: Option<Isometry2<f64>>,
+    /// Where the results go [default: out/WORLD-STRATEGY-SEED]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Explain {
+    /// The folder that `explore` wrote (or the DIR.partial that it is writing)
+    pub(crate) dir: PathBuf,
+    /// The number of the decision, counted from 0 as in the trace
+    #[arg(long, value_name = "N")]
+    pub(crate) step: usize,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Truth {
+    /// A scenario (.ron), or a map of ROS map_server (.yaml with its .pgm)
+    pub(crate) world: PathBuf,
+    /// Side of a cell in metres
+    #[arg(long, value_name = "M", value_parser = resolution, default_value = "0.1")]
+    pub(crate) resolution: f64,
+    /// The table that is written
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Model {
+    /// Robot, sonar, sensor model and planner [default: configs/b21r.ron, built in]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) config: Option<PathBuf>,
+    /// The range d of the echo in metres, up to the usable range of the model
+    #[arg(long, value_name = "M", value_parser = range)]
+    pub(crate) range: f64,
+    /// The table that is written
+    #[arg(long, value_name = "FILE.csv")]
+    pub(crate) out: PathBuf,
+}
+
+fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {
+    let value: f64 = text.trim().parse().map_err(|_| "not a number".to_owned())?;
+    let good = (min..=max).contains(&value);
+    good.then_some(value).ok_or_else(|| format!("it must lie in [{min}, {max}] m"))
+}
+
+fn resolution(text: &str) -> Result<f64, String> {
+    number(text, 1e-3, 10.0)
+}
+
+fn while_driving(text: &str) -> Result<f64, String> {
+    number(text, 0.01, 1e6)
+}
+
+fn range(text: &str) -> Result<f64, String> {
+    number(text, 1e-3, 100.0)
+}
+
+fn start(text: &str) -> Result<Isometry2<f64>, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, degrees]) if [x, y, degrees].iter().all(|v| v.is_finite() && v.abs() < 1e7) => {
+            Ok(Isometry2::new(Vector2::new(x, y), degrees.to_radians()))
+        }
+        _ => Err("three finite numbers are needed, as in 1.5,6,90".to_owned()),
+    }
+}

@@ -1,0 +1,137 @@
+//! `explore`: a world is explored to its end.
+
+use crate::arguments::Explore;
+use crate::interrupt::{self, Interrupt};
+use crate::progress::Progress;
+use crate::trace_file::TraceWriter;
+use crate::{input, results, say};
+use anyhow::Result;
+use covmap_explore::{
+    Config, Ending, Limits, Mission, Run, SimulatedRobot, Summary, TraceHeader, explore,
+};
+use covmap_io::OutputFolder;
+use covmap_world::World;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// A world, the mission in it, and the seed.
+pub(crate) struct Task {
+    pub(crate) world: World,
+    pub(crate) mission: Mission,
+    pub(crate) seed: u64,
+}
+
+pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
+    let interrupt = Interrupt::listen()?;
+    let task = task(arguments)?;
+    let folder = OutputFolder::create(folder_name(arguments, &task))?;
+    let mut progress = Progress::new(arguments.quiet);
+    let mut trace = TraceWriter::create(&folder.path("trace.jsonl"))?;
+    let begun = Instant::now();
+    let run = watch(&task, &mut trace, &mut progress, &interrupt)?;
+    let seconds = begun.elapsed().as_secs_f64();
+    let hash = trace.finish(&run.map)?;
+    progress.say("drawing and scoring the map …");
+    let summary = results::write(&folder, &task, &run, seconds, hash)?;
+    let written = folder.finish()?;
+    progress.finish();
+    if !arguments.quiet {
+        report(&summary, &written);
+    }
+    Ok(ExitCode::from(exit_code(run.ending)))
+}
+
+fn task(arguments: &Explore) -> Result<Task> {
+    let (config, name) = input::config(arguments.config.as_deref())?;
+    let config = overridden(config, arguments);
+    let world = input::world(&arguments.world, config.sonar.surface)?;
+    let limits = Limits {
+        while_driving: arguments.while_driving,
+        max_scans: arguments.max_scans.map(|most| most.get()),
+    };
+    let places = ((&world, arguments.world.as_path()), (&config, name.as_path()));
+    let mission = input::mission(places.0, places.1, arguments.start, limits)?;
+    Ok(Task { world, mission, seed: arguments.seed })
+}
+
+/// The configuration with what was typed instead of what the file says.
+fn overridden(mut config: Config, arguments: &Explore) -> Config {
+    if let Some(strategy) = arguments.strategy {
+        config.planner.strategy = strategy;
+    }
+    if let Some(resolution) = arguments.resolution {
+        config.resolution = resolution;
+    }
+    config
+}
+
+fn folder_name(arguments: &Explore, task: &Task) -> PathBuf {
+    let strategy = task.mission.config.planner.strategy.file_name();
+    let name = format!("{}-{strategy}-{}", task.world.name(), task.seed);
+    arguments.out.clone().unwrap_or_else(|| Path::new("out").join(name))
+}
+
+/// Explores, with all that hangs on it.
+fn watch(
+    task: &Task,
+    trace: &mut TraceWriter,
+    progress: &mut Progress,
+    interrupt: &Interrupt,
+) -> Result<Run> {
+    let Task { world, mission, seed } = task;
+    trace.header(&TraceHeader::new(mission, world.name(), *seed))?;
+    let mut robot = SimulatedRobot::new(world, &mission.config, *seed)?;
+    let mut failed = None;
+    let run = explore(mission, &mut robot, &mut |event, view| {
+        progress.show(mission, view);
+        if failed.is_none() {
+            failed = trace.event(event).err();
+        }
+        if interrupt.is_pressed() || failed.is_some() {
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    })?;
+    failed.map_or(Ok(run), |error| Err(error.into()))
+}
+
+fn exit_code(ending: Ending) -> u8 {
+    match ending {
+        Ending::Explored => 0,
+        Ending::BudgetSpent => 3,
+        Ending::StartBlocked => 4,
+        Ending::Interrupted => interrupt::EXIT_CODE,
+    }
+}
+
+/// An ending as a user reads it.
+pub(crate) fn in_words(ending: Ending) -> &'static str {
+    match ending {
+        Ending::Explored => "explored: nothing is open",
+        Ending::BudgetSpent => "the budget of scans is spent, and something is still open",
+        Ending::StartBlocked => "nothing is open, but the robot could not leave its start",
+        Ending::Interrupted => "interrupted",
+    }
+}
+
+fn report(summary: &Summary, written: &Path) {
+    let percent = |share: f64| format!("{:.1} %", 100.0 * share);
+    say::line(format!("{}, {}: {}", summary.world, summary.strategy, in_words(summary.ending)));
+    say::line(format!(
+        "  {} scans, {} decisions, {:.1} m driven, {} bumps, {:.1} s",
+        summary.scans, summary.decisions, summary.path_length_m, summary.bumps, summary.seconds
+    ));
+    let cells = &summary.cells;
+    say::line(format!(
+        "  cells: {} resolved, {} exhausted, {} open, {} unreachable",
+        cells.resolved, cells.exhausted, cells.open, cells.unreachable
+    ));
+    say::line(format!(
+        "  completeness {}, wall recall {}",
+        percent(summary.completeness),
+        percent(summary.wall_recall)
+    ));
+    say::line(format!("  {}", written.display()));
+}

@@ -1,0 +1,112 @@
+//! Worlds and configurations from files.
+
+use anyhow::{Result, anyhow, bail};
+use covmap::{Grid, Raster};
+use covmap_explore::{Config, ConfigError, Limits, Mission, MissionError};
+use covmap_io::{load_map_server, parse_ron, read_ron};
+use covmap_model::SensorModel;
+use covmap_plan::{Planner, PlannerError};
+use covmap_world::{Scenario, Surface, World};
+use nalgebra::{Isometry2, Point2};
+use std::fmt::Display;
+use std::path::{Path, PathBuf};
+
+/// The shipped default, so that it works in any folder.
+const DEFAULT_CONFIG: &str = include_str!("../../configs/b21r.ron");
+const DEFAULT_CONFIG_NAME: &str = "configs/b21r.ron";
+/// A beam, or the robot, may be so many cells long: beyond, tables of them fill the memory.
+const MOST_CELLS_ALONG: f64 = 1500.0;
+/// A belief may have so many numbers: 2·10⁷ cells of 11 bins.
+const MOST_NUMBERS: usize = covmap::MAX_CELLS * 11;
+
+/// An error about a file, in one sentence that names it.
+pub(crate) fn about<E: Display>(path: &Path) -> impl Fn(E) -> anyhow::Error {
+    move |error| anyhow!("{}: {error}", path.display())
+}
+
+/// The configuration in a file, or the default; and its name for errors.
+pub(crate) fn config(file: Option<&Path>) -> Result<(Config, PathBuf)> {
+    let name = file.unwrap_or(Path::new(DEFAULT_CONFIG_NAME));
+    let config = match file {
+        Some(file) => read_ron(file)?,
+        None => parse_ron(name, DEFAULT_CONFIG)?,
+    };
+    Ok((config, name.to_owned()))
+}
+
+/// The world in a scenario or in a map of map_server. What a file does not say about
+/// surfaces is `surface`.
+pub(crate) fn world(file: &Path, surface: Surface) -> Result<World> {
+    let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    match extension.as_str() {
+        "ron" => {
+            let scenario: Scenario = read_ron(file)?;
+            World::from_scenario(&scenario, surface).map_err(about(file))
+        }
+        "yaml" | "yml" => {
+            let solid = load_map_server(file)?.solid();
+            let name = file.file_stem().unwrap_or_default().to_string_lossy();
+            World::from_raster(&name, &solid, surface).map_err(about(file))
+        }
+        _ => {
+            bail!("{}: a world is a scenario (.ron) or a map of map_server (.yaml)", file.display())
+        }
+    }
+}
+
+/// Checks all sections of a configuration, and that its tables will not be absurdly large.
+pub(crate) fn check(config: &Config, name: &Path) -> Result<SensorModel> {
+    let (_, model) = config.build().map_err(about(name))?;
+    let resolution = config.resolution;
+    for (what, length) in
+        [("model.usable_range", model.max_reach()), ("robot.radius", config.robot.radius)]
+    {
+        if length / resolution > MOST_CELLS_ALONG {
+            bail!(
+                "{}: {what}: {length} m are more than {MOST_CELLS_ALONG} cells of {resolution} m; \
+                 use a coarser resolution",
+                name.display()
+            );
+        }
+    }
+    check_planner(config, &model).map_err(about(name))?;
+    Ok(model)
+}
+
+/// The planner checks its parameters when it is made: make one for a single cell.
+fn check_planner(config: &Config, model: &SensorModel) -> Result<(), ConfigError> {
+    let grid = Grid::new(Point2::origin(), config.resolution, 1, 1)?;
+    let outside = Raster::filled(grid, false);
+    let planner = Planner::new(&config.planner, model, &outside, config.robot.radius, 0.0);
+    planner.map(|_| ()).map_err(|error: PlannerError| error.into())
+}
+
+/// Checks that a belief fits into the memory.
+pub(crate) fn check_size(grid: &Grid, config: &Config) -> Result<()> {
+    if grid.len().saturating_mul(config.model.bins) > MOST_NUMBERS {
+        bail!(
+            "a map of {} × {} cells with {} bins each is too large; use a coarser resolution or \
+             fewer bins",
+            grid.width(),
+            grid.height(),
+            config.model.bins
+        );
+    }
+    Ok(())
+}
+
+/// The mission to explore the world in a file.
+pub(crate) fn mission(
+    (world, file): (&World, &Path),
+    (config, name): (&Config, &Path),
+    start: Option<Isometry2<f64>>,
+    limits: Limits,
+) -> Result<Mission> {
+    check(config, name)?;
+    let grid = world.grid(config.resolution).map_err(about(file))?;
+    check_size(&grid, config).map_err(about(file))?;
+    Mission::new(world, config, start, limits).map_err(|error| match error {
+        MissionError::Config(error) => about(name)(error),
+        error => about(file)(error),
+    })
+}

@@ -1,0 +1,37 @@
+//! What a run leaves behind.
+
+use crate::explore::Task;
+use crate::input::about;
+use crate::pictures::Pictures;
+use anyhow::Result;
+use covmap_explore::{Run, Summary, Truth};
+use covmap_io::{CoverageThresholds, OutputFolder, save_map_server, write_json};
+
+/// Writes everything but the trace, and returns the numbers.
+pub(crate) fn write(
+    folder: &OutputFolder,
+    task: &Task,
+    run: &Run,
+    seconds: f64,
+    hash: String,
+) -> Result<Summary> {
+    let Task { world, mission, seed } = task;
+    let truth = Truth::new(world, mission);
+    let score = truth.score(&run.map, &truth.scored_cells(world, mission, run));
+    let strategy = &mission.config.planner.strategy;
+    let summary = Summary::new(world.name(), strategy, *seed, run, &score, seconds, hash);
+
+    let belief = folder.path("belief.bin");
+    std::fs::write(&belief, run.map.to_bytes()).map_err(about(&belief))?;
+    let likely = run.map.maximum_likelihood();
+    save_map_server(folder.partial(), "map", &likely, CoverageThresholds::default())?;
+    let pictures = Pictures { mission, run, truth: &truth, summary: &summary };
+    pictures.coverage().save(folder.path("coverage.png"))?;
+    pictures.entropy().save(folder.path("entropy.png"))?;
+    pictures.truth().save(folder.path("truth.png"))?;
+    pictures.occupancy()?.save(folder.path("occupancy.png"))?;
+    pictures.certificate().save(folder.path("certificate.png"))?;
+    // Last: whoever finds it finds all the others.
+    write_json(folder.path("summary.json"), &summary)?;
+    Ok(summary)
+}

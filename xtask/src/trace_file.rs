@@ -1,0 +1,108 @@
+//! The trace of a run in its file.
+
+use crate::input::about;
+use anyhow::{Result, anyhow};
+use covmap::CoverageMap;
+use covmap_explore::{Event, TRACE_VERSION, TraceHasher, TraceHeader};
+use covmap_io::{FileError, JsonLines, read_json_lines};
+use serde::Deserialize;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+
+/// Writes a trace line by line, and hashes it.
+#[derive(Debug)]
+pub(crate) struct TraceWriter {
+    lines: JsonLines<BufWriter<File>>,
+    hasher: TraceHasher,
+}
+
+impl TraceWriter {
+    pub(crate) fn create(path: &Path) -> Result<Self, FileError> {
+        Ok(Self { lines: JsonLines::create(path)?, hasher: TraceHasher::default() })
+    }
+
+    pub(crate) fn header(&mut self, header: &TraceHeader) -> Result<(), FileError> {
+        self.hasher.add(header);
+        self.lines.write(header)?;
+        self.lines.flush()
+    }
+
+    /// Writes an event; a decision is in the file when this returns.
+    pub(crate) fn event(&mut self, event: &Event) -> Result<(), FileError> {
+        self.hasher.add(event);
+        self.lines.write(event)?;
+        match event {
+            Event::Decision { .. } | Event::End { .. } => self.lines.flush(),
+            Event::Scan { .. } | Event::Bump { .. } => Ok(()),
+        }
+    }
+
+    /// The hash of all lines and of the belief that they led to.
+    pub(crate) fn finish(mut self, belief: &CoverageMap) -> Result<String, FileError> {
+        self.lines.flush()?;
+        self.hasher.add_bytes(&belief.to_bytes());
+        Ok(self.hasher.finish())
+    }
+}
+
+/// A trace up to one decision.
+#[derive(Debug)]
+pub(crate) struct Trace {
+    pub(crate) header: TraceHeader,
+    /// All events up to the decision, which is the last.
+    pub(crate) events: Vec<Event>,
+}
+
+/// The only field that every version of a trace has.
+#[derive(Deserialize)]
+struct Version {
+    covmap_trace: u32,
+}
+
+impl Trace {
+    /// Reads a trace up to the decision with a number. Its last line may be cut short.
+    pub(crate) fn read(path: &Path, step: usize) -> Result<Self> {
+        let header = read_header(path)?;
+        let mut events = Vec::new();
+        let mut decisions = 0;
+        // The first line is the header, which is no event.
+        for event in read_json_lines::<Event>(path)?.skip(1) {
+            let event = match event {
+                Err(FileError::Truncated { .. }) => break,
+                event => event?,
+            };
+            let decision = matches!(event, Event::Decision { .. });
+            if decisions <= step {
+                events.push(event);
+            }
+            decisions += usize::from(decision);
+        }
+        if step >= decisions {
+            return Err(about(path)(no_such_decision(step, decisions)));
+        }
+        Ok(Self { header, events })
+    }
+}
+
+fn no_such_decision(step: usize, decisions: usize) -> String {
+    match decisions {
+        0 => format!("there is no decision {step}: the trace has none at all"),
+        1 => format!("there is no decision {step}: the trace has one, number 0"),
+        _ => format!(
+            "there is no decision {step}: the trace has {decisions}, numbered 0 to {}",
+            decisions - 1
+        ),
+    }
+}
+
+fn read_header(path: &Path) -> Result<TraceHeader> {
+    let empty = || anyhow!("{}: the trace is empty", path.display());
+    let Version { covmap_trace } = read_json_lines(path)?.next().ok_or_else(empty)??;
+    if covmap_trace != TRACE_VERSION {
+        let reason =
+            format!("a trace of version {covmap_trace}; this covmap reads {TRACE_VERSION}");
+        return Err(about(path)(reason));
+    }
+    Ok(read_json_lines(path)?.next().ok_or_else(empty)??)
+}

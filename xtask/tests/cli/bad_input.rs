@@ -1,0 +1,150 @@
+//! Scenarios, configurations, arguments and folders that are wrong.
+
+use crate::typed::{Shell, shipped};
+
+/// Refuses a scenario in which a part of a good one is replaced.
+#[track_caller]
+fn refuse(part: &str, instead: &str, expected: &[&str]) {
+    let good = "(
+    name: \"room\",
+    extent: (width: 4.0, height: 3.0),
+    start: (x: 1.0, y: 1.0, heading: 0.0),
+    obstacles: [
+        (shape: Rectangle(center: (3.0, 2.0), size: (0.5, 0.5), angle: 0.0), surface: Rough),
+    ],
+)";
+    assert!(good.contains(part));
+    let shell = Shell::new();
+    shell.write("room.ron", good.replace(part, instead));
+    shell.refuse("explore room.ron --max-scans 1", &[&["room.ron"], expected].concat());
+}
+
+/// Refuses the shipped configuration with one line, that of a field, replaced.
+#[track_caller]
+fn refuse_config(field: &str, instead: &str, expected: &[&str]) {
+    let good = std::fs::read_to_string(shipped("configs/b21r.ron")).unwrap();
+    let is_field = |line: &str| line.trim_start().starts_with(&format!("{field}:"));
+    assert_eq!(good.lines().filter(|line| is_field(line)).count(), 1, "{field}");
+    let lines = good.lines().map(|line| if is_field(line) { instead } else { line });
+    let shell = Shell::new();
+    shell.write("robot.ron", lines.collect::<Vec<_>>().join("\n"));
+    let lab = shipped("scenarios/lab.ron");
+    let line = format!("explore {lab} --config robot.ron --max-scans 1");
+    shell.refuse(&line, &[&["robot.ron"], expected].concat());
+}
+
+#[test]
+fn an_error_in_a_scenario_names_file_line_column_and_field() {
+    refuse("surface: Rough", "surface: Rouhg", &["room.ron:6:", "obstacles[0].surface", "Rouhg"]);
+    refuse("width: 4.0", "widht: 4.0", &["room.ron:3:", "extent", "widht"]);
+    refuse("width: 4.0, ", "", &["room.ron:3:", "extent", "width"]);
+    refuse("height: 3.0", "height: \"3\"", &["room.ron:3:", "extent.height"]);
+    refuse("],\n)", "", &["room.ron:"]);
+    refuse("Rectangle(", "Blob(", &["room.ron:6:", "obstacles[0].shape", "Blob"]);
+}
+
+#[test]
+fn absurd_worlds_are_refused() {
+    refuse("width: 4.0", "width: NaN", &["NaN"]);
+    refuse("width: 4.0", "width: -4.0", &["-4"]);
+    refuse("width: 4.0, height: 3.0", "width: 9000.0, height: 9000.0", &["20000000 cells"]);
+    refuse("size: (0.5, 0.5)", "size: (0.5, -0.5)", &["obstacle 0", "-0.5"]);
+    refuse("size: (0.5, 0.5)", "size: (inf, 0.5)", &["obstacle 0", "inf"]);
+    refuse("\"room\"", "\"a/b\"", &["name"]);
+    refuse("\"room\"", "\"\"", &["name"]);
+}
+
+#[test]
+fn impossible_starts_are_refused() {
+    refuse("x: 1.0, y: 1.0", "x: 3.0, y: 2.0", &["start (3, 2)", "inside an obstacle"]);
+    refuse("x: 1.0, y: 1.0", "x: 0.1, y: 1.0", &["start (0.1, 1)", "0.27"]);
+    refuse("x: 1.0, y: 1.0", "x: 9.0, y: 1.0", &["start (9, 1"]);
+    let shell = Shell::new();
+    let lab = shipped("scenarios/lab.ron");
+    shell.refuse(&format!("explore {lab} --start 1.9,2.4,0"), &["lab.ron", "(1.9, 2.4)"]);
+    shell.refuse(&format!("explore {lab} --start -1,2,0"), &["lab.ron", "(-1, 2)"]);
+}
+
+#[test]
+fn polygons_that_are_none_are_refused() {
+    let rectangle = "Rectangle(center: (3.0, 2.0), size: (0.5, 0.5), angle: 0.0)";
+    let polygon = |points: &str| format!("Polygon([{points}])");
+    refuse(rectangle, &polygon("(2.0, 2.0), (3.0, 2.0)"), &["obstacle 0", "at least 3"]);
+    let crossing = polygon("(2.0, 1.0), (3.0, 2.0), (3.0, 0.5), (2.0, 2.0)");
+    refuse(rectangle, &crossing, &["obstacle 0", "cross"]);
+    refuse(rectangle, &polygon("(2.0, 1.0), (3.0, 1.0), (2.5, 1.0)"), &["obstacle 0"]);
+}
+
+#[test]
+fn an_error_in_a_configuration_names_file_line_column_and_field() {
+    refuse_config("speed", "sped: 0.5,", &["robot.ron:", "robot", "sped"]);
+    refuse_config("tempering", "", &["robot.ron:", "model", "tempering"]);
+    refuse_config("strategy", "strategy: Fbe,", &["robot.ron:", "planner.strategy", "Fbe"]);
+}
+
+#[test]
+fn impossible_configurations_are_refused() {
+    refuse_config("sigma_in", "sigma_in: 0.01,", &["model.sigma_in", "σ_in 0.01", "σ_out"]);
+    refuse_config("radius", "radius: -0.27,", &["robot.radius", "-0.27"]);
+    refuse_config("bins", "bins: 1,", &["model.bins", "1"]);
+    let name = "planner.entropy_threshold";
+    refuse_config("entropy_threshold", "entropy_threshold: NaN,", &[name, "NaN"]);
+    refuse_config("resolution", "resolution: 0.0,", &["resolution", "0"]);
+    refuse_config("usable_range", "usable_range: 1000.0,", &["model.usable_range", "1000"]);
+    refuse_config("noise_min", "noise_min: -1.0,", &["noise_min", "-1"]);
+    refuse_config("ring", "ring: Sensors([]),", &["robot.ring", "0 sensors"]);
+}
+
+#[test]
+fn files_that_are_no_worlds_are_refused() {
+    let shell = Shell::new();
+    shell.refuse("explore none.ron", &["none.ron: cannot be read"]);
+    shell.write("empty.ron", "");
+    shell.refuse("explore empty.ron", &["empty.ron:1:"]);
+    shell.write("binary.ron", [0xff, 0xfe, 0x00]);
+    shell.refuse("explore binary.ron", &["binary.ron: is not a text file"]);
+    shell.write("world.txt", "");
+    for world in ["world.txt", "world", "."] {
+        shell.refuse(&format!("explore {world}"), &[world, "a scenario (.ron)", "(.yaml)"]);
+    }
+    shell.refuse("truth none.ron --out t.csv", &["none.ron: cannot be read"]);
+    shell.refuse("model --config none.ron --range 1 --out m.csv", &["none.ron: cannot be read"]);
+    std::fs::create_dir(shell.path("folder.ron")).unwrap();
+    shell.refuse("explore folder.ron", &["folder.ron: cannot be read"]);
+}
+
+#[test]
+fn a_folder_that_cannot_be_written_is_refused() {
+    let shell = Shell::new();
+    let lab = shipped("scenarios/lab.ron");
+    shell.write("file", "");
+    shell.refuse(&format!("explore {lab} --out file"), &["file: is a file"]);
+    shell.refuse(&format!("explore {lab} --out file/run"), &["file/run"]);
+    shell.refuse(&format!("explore {lab} --out /proc/none/run"), &["/proc/none"]);
+    shell.refuse(&format!("explore {lab} --out .."), &["is no name for an output folder"]);
+}
+
+#[test]
+fn wrong_arguments_are_refused() {
+    let shell = Shell::new();
+    let lab = shipped("scenarios/lab.ron");
+    for wrong in [
+        "--strategy FBE",
+        "--strategy IG_CL:-1",
+        "--resolution 0",
+        "--resolution nan",
+        "--resolution 1e-9",
+        "--while-driving 0",
+        "--max-scans 0",
+        "--seed -1",
+        "--start 1,2",
+        "--start 1,2,inf",
+        "--seeds 3",
+    ] {
+        let typed = shell.expect(&format!("explore {lab} {wrong}"), 2);
+        assert!(typed.err.starts_with("error: ") && !typed.err.contains("panicked"), "{typed:?}");
+        assert!(shell.files().is_empty());
+    }
+    shell.expect("", 2);
+    shell.expect("model --range -1 --out m.csv", 2);
+}

@@ -1,0 +1,193 @@
+//! `explore`.
+
+use crate::typed::{Shell, shipped, short_run};
+use covmap::CoverageMap;
+use covmap_io::{MapCell, load_map_server};
+
+const FILES: [&str; 10] = [
+    "summary.json",
+    "trace.jsonl",
+    "belief.bin",
+    "map.pgm",
+    "map.yaml",
+    "coverage.png",
+    "entropy.png",
+    "truth.png",
+    "occupancy.png",
+    "certificate.png",
+];
+const KEYS: [&str; 21] = [
+    "world",
+    "strategy",
+    "seed",
+    "resolution",
+    "ending",
+    "scans",
+    "decisions",
+    "bumps",
+    "path_length_m",
+    "cells",
+    "completeness",
+    "wall_recall",
+    "phantom",
+    "mae_mode",
+    "mae_mean",
+    "mean_log_likelihood",
+    "share_entropy_above_0_65",
+    "negative_gains",
+    "capped_cells",
+    "seconds",
+    "trace_hash",
+];
+
+#[test]
+fn a_run_writes_every_file_and_ends_when_its_budget_is_spent() {
+    let shell = Shell::new();
+    let typed = shell.expect(&short_run(), 3);
+    assert!(typed.out.contains("budget") && typed.out.contains("run"), "{typed:?}");
+    assert_eq!(typed.err, "", "nothing of the progress when piped");
+    for name in FILES {
+        assert!(std::fs::metadata(shell.path("run").join(name)).unwrap().len() > 0, "{name}");
+    }
+    assert!(!shell.path("run.partial").exists());
+    let summary = shell.json("run/summary.json");
+    let fields = summary.as_object().unwrap();
+    for key in KEYS {
+        assert!(fields.get(key).is_some_and(|value| !value.is_null()), "{key}");
+    }
+    assert_eq!(fields.len(), KEYS.len());
+    assert_eq!(summary["ending"], "BudgetSpent");
+    assert_eq!(summary["scans"], 30);
+    assert_eq!(summary["strategy"], "IG_CL(.3)");
+}
+
+#[test]
+fn a_small_room_is_explored_to_its_end() {
+    let shell = Shell::new();
+    shell.write("room.ron", "(name: \"room\", extent: (width: 2.4, height: 2.0), obstacles: [])");
+    let typed = shell.expect("explore room.ron --resolution 0.2 --strategy CL --seed 3", 0);
+    assert!(typed.out.contains("explored: nothing is open"), "{typed:?}");
+    let summary = shell.json("out/room-CL-3/summary.json");
+    assert_eq!(summary["ending"], "Explored");
+    assert_eq!(summary["cells"]["open"], 0);
+}
+
+#[test]
+fn quiet_is_quiet() {
+    let shell = Shell::new();
+    let typed = shell.expect(&format!("{} --quiet", short_run()), 3);
+    assert_eq!((typed.out.as_str(), typed.err.as_str()), ("", ""));
+}
+
+#[test]
+fn the_same_command_is_the_same_run_on_any_number_of_threads() {
+    let shell = Shell::new();
+    let hash = |threads: &str, seed: &str| {
+        let mut command = shell.command(&format!("{} --seed {seed} --quiet", short_run()));
+        if !threads.is_empty() {
+            command.env("RAYON_NUM_THREADS", threads);
+        }
+        assert_eq!(command.status().unwrap().code(), Some(3));
+        let files = ["trace.jsonl", "belief.bin", "map.pgm", "coverage.png"];
+        let files = files.map(|name| std::fs::read(shell.path("run").join(name)).unwrap());
+        (shell.json("run/summary.json")["trace_hash"].as_str().unwrap().to_owned(), files)
+    };
+    let first = hash("", "1");
+    assert_eq!(first.0.len(), 64);
+    for threads in ["", "1", "2"] {
+        assert!(hash(threads, "1") == first, "{threads} threads");
+    }
+    assert_ne!(hash("", "2").0, first.0);
+}
+
+#[test]
+fn a_foreign_folder_is_refused_and_one_of_ours_is_replaced() {
+    let shell = Shell::new();
+    std::fs::create_dir(shell.path("run")).unwrap();
+    shell.write("run/thesis.txt", "years of work");
+    shell.refuse(&short_run(), &["run: was not written by covmap"]);
+    std::fs::remove_file(shell.path("run/thesis.txt")).unwrap();
+    shell.expect(&short_run(), 3);
+    shell.write("run/note.txt", "");
+    shell.expect(&short_run().replace("30", "5"), 3);
+    assert!(!shell.path("run/note.txt").exists());
+    assert_eq!(shell.json("run/summary.json")["scans"], 5);
+}
+
+#[test]
+fn the_map_is_read_back_and_unknown_stays_unknown() {
+    let shell = Shell::new();
+    shell.expect(&short_run().replace("30", "2"), 3);
+    let map = load_map_server(shell.path("run/map.yaml")).unwrap();
+    let belief = std::fs::read(shell.path("run/belief.bin")).unwrap();
+    let belief = CoverageMap::from_bytes(&belief).unwrap();
+    let same = |a: f64, b: f64| (a - b).abs() < 1e-9;
+    assert!(same(map.grid.resolution(), 0.2));
+    assert!(same(map.grid.lower_left().x, belief.grid().lower_left().x));
+    let mut unknown = 0;
+    for (cell, read) in map.cells.iter() {
+        match (belief.is_known(cell), belief.mode(cell), *read) {
+            (false, _, read) => {
+                assert_eq!(read, MapCell::Unknown);
+                unknown += 1;
+            }
+            (true, mode, MapCell::Occupancy(p)) if p < 0.5 => assert!(mode <= 0.2 + 1e-9),
+            (true, mode, MapCell::Occupancy(_)) => assert!(mode >= 0.5 - 1e-9),
+            (true, mode, MapCell::Unknown) => assert!(mode > 0.2 && mode < 0.5),
+        }
+    }
+    assert!(unknown > 0 && unknown < map.grid.len());
+}
+
+#[test]
+fn a_map_of_map_server_is_a_world() {
+    let shell = Shell::new();
+    let (width, height) = (40, 30);
+    let mut image = format!("P5\n{width} {height}\n255\n").into_bytes();
+    let inside = |i: usize, n: usize| (2..n - 2).contains(&i);
+    let free = |x, y| inside(x, width) && inside(y, height);
+    image.extend((0..width * height).map(|i| 254 * u8::from(free(i % width, i / width))));
+    shell.write("cellar.pgm", image);
+    let yaml = "image: cellar.pgm\nresolution: 0.1\norigin: [-2.0, -1.0, 0.0]\nnegate: 0\n\
+                occupied_thresh: 0.65\nfree_thresh: 0.196\n";
+    shell.write("cellar.yaml", yaml);
+    let typed = "explore cellar.yaml --resolution 0.2 --start -0.5,0.5,90 --max-scans 4 \
+                 --strategy COUNT:5:2 --while-driving 0.3";
+    shell.expect(typed, 3);
+    let first = std::fs::read_to_string(shell.path("out/cellar-COUNT-5-2-1/trace.jsonl")).unwrap();
+    assert!(first.contains("[-0.5,0.5]"), "the start is the one that was typed");
+}
+
+#[test]
+fn the_configuration_is_the_one_that_was_named() {
+    let shell = Shell::new();
+    let config = shipped("configs/sonar8.ron");
+    shell.expect(&format!("{} --config {config}", short_run()), 3);
+    let summary = shell.json("run/summary.json");
+    assert_eq!(summary["resolution"], 0.2);
+}
+
+#[test]
+fn help_names_all_options() {
+    let shell = Shell::new();
+    let help = shell.expect("explore --help", 0).out;
+    for option in [
+        "--config",
+        "--strategy",
+        "--seed",
+        "--resolution",
+        "--while-driving",
+        "--max-scans",
+        "--start",
+        "--out",
+        "--quiet",
+        "130",
+        "summary.json",
+    ] {
+        assert!(help.contains(option), "{option}");
+    }
+    let help = shell.expect("--help", 0).out;
+    for command in ["explore", "explain", "truth", "model"] {
+        assert!(help.contains(command), "{command}");
+    }
+}

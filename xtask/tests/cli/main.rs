@@ -1,0 +1,10 @@
+//! The program as a user types it.
+#![allow(clippy::unwrap_used, reason = "tests")]
+
+mod bad_input;
+mod bad_maps;
+mod explain;
+mod explore;
+mod interrupt;
+mod tables;
+mod typed;
