@@ -328,29 +328,25 @@ impl Planner {
             records.iter().map(f).fold(f64::NEG_INFINITY, f64::max)
         };
         let best_score = top(|r| r.score, records);
-        let contenders: Vec<usize> =
-            (0..records.len()).filter(|i| records[*i].score >= best_score - doubt).collect();
-        if contenders.len() < 2 {
+        let contends = |r: &CandidateRecord| r.score >= best_score - doubt;
+        let contenders = records.iter().filter(|r| contends(r)).count();
+        if contenders < 2 {
             return 0;
         }
         // Eq. (16) divides by the largest gain, so that one must be exact as well.
         let largest = records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
-        let max_gain = top(|r| r.gain, records);
-        let near_max = |r: &CandidateRecord| r.gain >= max_gain - 2.0 * GAIN_TOLERANCE * largest;
-        for i in 0..records.len() {
-            if contenders.contains(&i) || near_max(&records[i]) {
-                let cell = records[i].cell;
-                records[i].gain = expected_information_gain(
-                    map,
-                    &self.model,
-                    &self.stencil,
-                    &self.parameters,
-                    cell,
-                );
-            }
+        let near_max = top(|r| r.gain, records) - 2.0 * GAIN_TOLERANCE * largest;
+        for r in records.iter_mut().filter(|r| contends(r) || r.gain >= near_max) {
+            r.gain = expected_information_gain(
+                map,
+                &self.model,
+                &self.stencil,
+                &self.parameters,
+                r.cell,
+            );
         }
         score.apply(records);
-        contenders.len()
+        contenders
     }
 
     /// The candidates; for IG_WIN those inside the window, which is opened and closed here.

@@ -136,6 +136,7 @@ mod tests {
         let (height, width) = (rows.len(), rows[0].len());
         let grid = Grid::new(Point2::origin(), 1.0, width, height).unwrap();
         let at = |cell: Cell| rows[height - 1 - cell.y as usize][cell.x as usize];
+        let last = |side: usize| i32::try_from(side).unwrap();
         let source = grid.cells().find(|c| at(*c) == 'S').unwrap();
         let costs = travel_costs(&grid, source, |i| at(grid.cell(i)) != '#');
         let text = |cell| {
@@ -143,9 +144,8 @@ mod tests {
                 .cost(grid.index(cell).unwrap())
                 .map_or("##".into(), |c| format!("{:02}", (c * 10.0).round()))
         };
-        let row =
-            |y| (0..width as i32).map(|x| text(Cell::new(x, y))).collect::<Vec<_>>().join(" ");
-        let drawn: Vec<String> = (0..height as i32).rev().map(row).collect();
+        let row = |y| (0..last(width)).map(|x| text(Cell::new(x, y))).collect::<Vec<_>>().join(" ");
+        let drawn: Vec<String> = (0..last(height)).rev().map(row).collect();
         let expected: Vec<&str> =
             expected.lines().map(str::trim).filter(|l| !l.is_empty()).collect();
         assert_eq!(drawn, expected, "\n{}", drawn.join("\n"));

@@ -1,0 +1,172 @@
+//! Whole runs in small worlds: they end, they repeat, and their certificates hold.
+#![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
+
+use covmap_explore::{
+    Config, Ending, Event, Limits, Mission, RecordedRobot, Run, SimulatedRobot, TraceHasher, Truth,
+    explore,
+};
+use covmap_plan::{CellStatus, Strategy};
+use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
+use proptest::prelude::*;
+use proptest::strategy::Strategy as Generator;
+use std::ops::ControlFlow;
+
+fn config(strategy: Strategy) -> Config {
+    let mut config = Config::b21r();
+    config.resolution = 0.2;
+    config.planner.strategy = strategy;
+    config
+}
+
+fn world(obstacles: Vec<Obstacle>) -> World {
+    let extent = Extent { width: 3.6, height: 2.8 };
+    let scenario = Scenario { name: "room".into(), extent, start: None, obstacles };
+    World::from_scenario(&scenario, Surface::Rough).unwrap()
+}
+
+fn run(world: &World, config: &Config, seed: u64, limits: Limits) -> (Run, Vec<Event>, String) {
+    let mission = Mission::new(world, config, None, limits).unwrap();
+    let mut robot = SimulatedRobot::new(world, config, seed).unwrap();
+    let (mut events, mut hash) = (Vec::new(), TraceHasher::default());
+    let run = explore(&mission, &mut robot, &mut |event, _| {
+        hash.add(event);
+        events.push(event.clone());
+        ControlFlow::Continue(())
+    });
+    (run.unwrap(), events, hash.finish())
+}
+
+fn some_obstacles() -> impl Generator<Value = Vec<Obstacle>> {
+    let place = (0.0..3.6f64, 0.0..2.8f64);
+    let shape = prop_oneof![
+        (place.clone(), 0.05..0.3f64).prop_map(|(center, radius)| Shape::Circle { center, radius }),
+        (place.clone(), 0.1..0.8f64, 0.1..0.8f64, 0.0..3.0f64)
+            .prop_map(|(center, w, h, angle)| Shape::Rectangle { center, size: (w, h), angle }),
+        (place.clone(), place, 0.05..0.2f64).prop_map(|(from, to, thickness)| Shape::Wall {
+            from,
+            to,
+            thickness
+        }),
+    ];
+    let surface = prop_oneof![Just(Surface::Rough), Just(Surface::Smooth)];
+    prop::collection::vec(
+        (shape, surface).prop_map(|(shape, surface)| Obstacle { shape, surface }),
+        0..5,
+    )
+}
+
+fn strategies() -> impl Generator<Value = Strategy> {
+    prop::sample::select(vec![
+        Strategy::Cl,
+        Strategy::Ig,
+        Strategy::IgWin { radius: 1.0 },
+        Strategy::IgCl { alpha: 0.3 },
+        Strategy::Count { times: 3.0, half_distance: None },
+    ])
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 16, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn every_run_ends_and_nothing_is_open_then(
+        obstacles in some_obstacles(), strategy in strategies(), seed in 0..1000u64,
+        while_driving in prop::option::of(0.1..0.5f64)
+    ) {
+        let wall = |o: &Obstacle| matches!(o.shape, Shape::Wall { from, to, .. } if (from.0 - to.0).hypot(from.1 - to.1) < 0.2);
+        prop_assume!(!obstacles.iter().any(wall));
+        let world = world(obstacles);
+        let config = config(strategy);
+        let limits = Limits { while_driving, max_scans: Some(20_000) };
+        prop_assume!(Mission::new(&world, &config, None, limits).is_ok());
+        let (run, events, _) = run(&world, &config, seed, limits);
+        prop_assert!(matches!(run.ending, Ending::Explored | Ending::StartBlocked), "{:?}", run.ending);
+        prop_assert!(run.certificate.values().iter().all(|s| *s != CellStatus::Open));
+        let scans = events.iter().filter(|e| matches!(e, Event::Scan { .. })).count();
+        prop_assert_eq!(scans, run.scans.len());
+    }
+}
+
+#[test]
+fn the_same_run_twice_is_the_same_to_the_last_bit() {
+    let (world, config) = (world(vec![]), config(Strategy::IgCl { alpha: 0.3 }));
+    let (a, _, first) = run(&world, &config, 7, Limits::default());
+    let (b, _, second) = run(&world, &config, 7, Limits::default());
+    assert_eq!(first, second);
+    assert_eq!(a.map.to_bytes(), b.map.to_bytes());
+    assert_ne!(first, run(&world, &config, 8, Limits::default()).2);
+}
+
+#[test]
+fn alpha_zero_gives_the_trace_of_closest_location() {
+    let world = world(vec![]);
+    let targets = |strategy| {
+        let (_, events, _) = run(&world, &config(strategy), 3, Limits::default());
+        let target = |e: Event| match e {
+            Event::Decision { decision, .. } => Some(decision.target),
+            _ => None,
+        };
+        events.into_iter().filter_map(target).collect::<Vec<_>>()
+    };
+    assert_eq!(targets(Strategy::IgCl { alpha: 0.0 }), targets(Strategy::Cl));
+}
+
+#[test]
+fn a_recorded_run_repeats_itself() {
+    let shape = Shape::Circle { center: (0.9, 0.9), radius: 0.2 };
+    let world = world(vec![Obstacle { shape, surface: Surface::Rough }]);
+    let config = config(Strategy::Ig);
+    let limits = Limits { while_driving: Some(0.3), max_scans: None };
+    let (first, events, hash) = run(&world, &config, 5, limits);
+    let mission = Mission::new(&world, &config, None, limits).unwrap();
+    let mut robot = RecordedRobot::new(events, 24);
+    let mut again = TraceHasher::default();
+    let replayed = explore(&mission, &mut robot, &mut |event, _| {
+        again.add(event);
+        ControlFlow::Continue(())
+    });
+    assert_eq!(again.finish(), hash);
+    assert_eq!(replayed.unwrap().map.to_bytes(), first.map.to_bytes());
+}
+
+#[test]
+fn a_budget_and_an_interruption_end_a_run() {
+    let (world, config) = (world(vec![]), config(Strategy::Cl));
+    let limits = Limits { while_driving: None, max_scans: Some(4) };
+    let (spent, ..) = run(&world, &config, 1, limits);
+    assert_eq!((spent.ending, spent.scans.len()), (Ending::BudgetSpent, 4));
+    let mission = Mission::new(&world, &config, None, Limits::default()).unwrap();
+    let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
+    let stopped = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Break(())).unwrap();
+    assert_eq!((stopped.ending, stopped.scans.len()), (Ending::Interrupted, 1));
+}
+
+#[test]
+fn a_robot_that_is_walled_in_says_so() {
+    let wall = |center, size| Obstacle {
+        shape: Shape::Rectangle { center, size, angle: 0.0 },
+        surface: Surface::Rough,
+    };
+    let world = world(vec![
+        wall((0.9, 1.4), (1.6, 2.8)),
+        wall((2.7, 1.4), (1.6, 2.8)),
+        wall((1.8, 0.5), (0.4, 1.4)),
+        wall((1.8, 2.3), (0.4, 1.4)),
+    ]);
+    // A cell of free space is left that no robot fits into.
+    let refused = Mission::new(&world, &config(Strategy::Cl), None, Limits::default());
+    assert!(refused.is_err());
+}
+
+#[test]
+fn an_empty_room_is_mapped_completely() {
+    let (world, config) = (world(vec![]), config(Strategy::IgCl { alpha: 0.3 }));
+    let mission = Mission::new(&world, &config, None, Limits::default()).unwrap();
+    let (run, ..) = run(&world, &config, 1, Limits::default());
+    let truth = Truth::new(&world, &mission);
+    let score = truth.score(&run.map, &truth.scored_cells(&world, &mission, &run));
+    assert_eq!(run.ending, Ending::Explored);
+    assert!(score.completeness > 0.97, "{score:?}");
+    assert!(score.wall_recall > 0.8, "{score:?}");
+    assert!(score.mean_log_likelihood.is_finite() && score.mae_mode >= 0.0);
+}
