@@ -15,6 +15,10 @@ const GAIN: u8 = 2;
 const REASON: u8 = 4;
 /// The upper bound of the beam's gain must be computed again.
 const BOUND: u8 = 8;
+/// Whether a reason is in the beam's sight must be looked up again.
+const LIMIT: u8 = 16;
+/// The upper bound of the beam's gain holds, but a new one may be lower.
+const LOOSE: u8 = 32;
 
 /// How far the values of view-points are brought up to date.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,9 +34,9 @@ pub(crate) enum Upto {
 impl Upto {
     fn flags(self) -> u8 {
         match self {
-            Upto::Sight => SIGHT,
-            Upto::Bound => SIGHT | BOUND,
-            Upto::Gain => SIGHT | GAIN,
+            Upto::Sight => SIGHT | LIMIT,
+            Upto::Bound => SIGHT | LIMIT | BOUND,
+            Upto::Gain => SIGHT | LIMIT | GAIN,
         }
     }
 }
@@ -90,20 +94,36 @@ impl BeamCache {
         }
     }
 
-    /// Marks what depends on a cell whose posterior changed: gains, and, where what it
-    /// reflects or whether it is a reason changed as well, sights.
-    pub(crate) fn mark(&mut self, cell: Cell, gain: bool, sight: bool) {
-        let mask = if gain { GAIN | BOUND } else { 0 } | if sight { SIGHT } else { 0 };
-        let beams = self.stencil.beams.len();
-        for onlooker in &self.onlookers {
-            let Some(index) = self.grid.index(cell.offset(onlooker.dx, onlooker.dy)) else {
-                continue;
-            };
-            let slot = index * beams + onlooker.beam as usize;
-            if onlooker.rank < self.horizon[slot] {
-                self.flags[slot] |= mask;
+    /// Marks the gains that depend on a cell whose entropy rose by `rise` \[nats\], or fell.
+    ///
+    /// An upper bound of a gain goes up by no more than that.
+    pub(crate) fn mark_gains(&mut self, cell: Cell, rise: f64) {
+        let Self { flags, gain, .. } = self;
+        let mark = |slot: usize| {
+            if flags[slot] & (GAIN | BOUND) == GAIN {
+                gain[slot] += rise;
+                flags[slot] |= LOOSE;
+            } else {
+                flags[slot] |= GAIN | BOUND;
             }
-        }
+        };
+        for_each_onlooker(&self.onlookers, &self.grid, &self.stencil, &self.horizon, cell, mark);
+    }
+
+    /// Marks all that depends on what a cell reflects and whether it can change.
+    pub(crate) fn mark_sights(&mut self, cell: Cell) {
+        self.mark_flags(cell, SIGHT | GAIN | BOUND);
+    }
+
+    /// Marks what depends on the distance up to which a cell is a reason to measure.
+    pub(crate) fn mark_limit(&mut self, cell: Cell) {
+        self.mark_flags(cell, LIMIT);
+    }
+
+    fn mark_flags(&mut self, cell: Cell, mask: u8) {
+        let flags = &mut self.flags;
+        let mark = |slot: usize| flags[slot] |= mask;
+        for_each_onlooker(&self.onlookers, &self.grid, &self.stencil, &self.horizon, cell, mark);
     }
 
     /// Marks the gains of a view-point, whatever changed.
@@ -137,6 +157,17 @@ impl BeamCache {
                 if !wanted {
                     return;
                 }
+                if upto == Upto::Gain {
+                    for beam in 0..beams {
+                        if flags[beam] & (LOOSE | SIGHT) != LOOSE {
+                            continue;
+                        }
+                        let look = Look { cells, offsets: &offsets[beam], view_point };
+                        look.ahead(&stencil.beams[beam], uniform_share, &mut scratch.likelihood);
+                        gain[beam] = look.gain_bound(&stencil.beams[beam], &scratch.likelihood);
+                        flags[beam] &= !LOOSE;
+                    }
+                }
                 for (beam, cone) in stencil.beams.iter().enumerate() {
                     if flags[beam] & upto.flags() == 0 {
                         continue;
@@ -145,20 +176,27 @@ impl BeamCache {
                         return;
                     }
                     let look = Look { cells, offsets: &offsets[beam], view_point };
+                    let stale = flags[beam];
+                    if stale & (SIGHT | LIMIT) == LIMIT {
+                        let seen = usize::from(in_sight[beam]);
+                        flags[beam] = stale & !(LIMIT | REASON) | look.reason(seen);
+                    }
+                    if stale & upto.flags() == LIMIT {
+                        continue;
+                    }
                     look.ahead(cone, uniform_share, &mut scratch.likelihood);
                     if flags[beam] & SIGHT != 0 {
                         let seen = scratch.likelihood.cells_in_sight(cone);
-                        let reason = if look.holds_reason(seen) { REASON } else { 0 };
-                        flags[beam] = flags[beam] & !(SIGHT | REASON) | reason;
+                        flags[beam] = stale & !(SIGHT | LIMIT | REASON) | look.reason(seen);
                         in_sight[beam] = rank(seen);
                         horizon[beam] = rank(dependency(cone, &scratch.likelihood));
                     }
                     if upto == Upto::Gain && flags[beam] & GAIN != 0 {
                         gain[beam] = fast.beam_gain(cells, look.offsets, beam, view_point, scratch);
-                        flags[beam] &= !(GAIN | BOUND);
+                        flags[beam] &= !(GAIN | BOUND | LOOSE);
                     } else if upto == Upto::Bound && flags[beam] & BOUND != 0 {
                         gain[beam] = look.gain_bound(cone, &scratch.likelihood);
-                        flags[beam] &= !BOUND;
+                        flags[beam] &= !(BOUND | LOOSE);
                     }
                 }
             },
@@ -220,11 +258,14 @@ impl Look<'_> {
         range_likelihood(cone, uniform_share, |i| self.cells.reflection(at(i)), out);
     }
 
-    /// Whether one of the first `count` cells is a reason to measure from here.
-    fn holds_reason(&self, count: usize) -> bool {
+    /// [`REASON`] if one of the first `count` cells is a reason to measure from here.
+    fn reason(&self, count: usize) -> u8 {
         let here = self.cells.bordered(self.view_point);
-        let at = |i: usize| here.wrapping_add_signed(self.offsets.bordered[i]);
-        (0..count).any(|i| self.offsets.distance[i] <= self.cells.limit(at(i)))
+        let cells = self.offsets.distance[..count].iter().zip(&self.offsets.bordered);
+        let is_reason = |(distance, offset): (&f32, &isize)| {
+            *distance <= self.cells.limit(here.wrapping_add_signed(*offset))
+        };
+        if cells.into_iter().any(is_reason) { REASON } else { 0 }
     }
 
     /// An upper bound of the beam's E[I]: no outcome can take more from a cell than its
@@ -272,6 +313,26 @@ fn dependency(beam: &BeamStencil, likelihood: &RangeLikelihood) -> usize {
     let traced = beam.rings[..likelihood.traced].iter().map(|ring| ring.end);
     let outcomes = (0..=likelihood.echo.len()).filter(|k| likelihood.probability(*k) > 0.0);
     traced.chain(outcomes.map(|k| beam.reach(k))).max().unwrap_or(0)
+}
+
+/// Calls `mark` with the slot of every (view-point, beam) whose values depend on a cell.
+#[inline(always)]
+fn for_each_onlooker(
+    onlookers: &[Onlooker],
+    grid: &Grid,
+    stencil: &Stencil,
+    horizon: &[u16],
+    cell: Cell,
+    mut mark: impl FnMut(usize),
+) {
+    let beams = stencil.beams.len();
+    for onlooker in onlookers {
+        let Some(index) = grid.index(cell.offset(onlooker.dx, onlooker.dy)) else { continue };
+        let slot = index * beams + onlooker.beam as usize;
+        if onlooker.rank < horizon[slot] {
+            mark(slot);
+        }
+    }
 }
 
 /// All (view-point, beam) that can see a cell, in the order of the view-points.

@@ -233,7 +233,8 @@ mod tests {
 
     #[test]
     fn a_cell_that_stalls_is_looked_at_from_nearer_until_it_is_exhausted() {
-        let mut e = exploration(|_| ());
+        let rule = StallRule::Banded { first: 3.0, closest: 0.5 };
+        let mut e = exploration(|p| p.stall_rule = rule);
         for (distance, limit) in [(2.8, 1.4), (1.2, 0.6), (0.6, 0.0)] {
             // The first scan of a band sets its lowest entropy; five more do not lower it.
             (0..6).for_each(|_| count(&mut e, distance, 1.0, 1.0));
@@ -274,7 +275,11 @@ mod tests {
         fn every_cell_ends_after_finitely_many_counted_scans(
             steps in prop::collection::vec((0.3..3.0f32, 0.6..2.4f32), 1200)
         ) {
-            let mut e = exploration(|p| (p.max_counted_scans, p.min_entropy_change) = (1_000_000, 0.05));
+            let rule = StallRule::Banded { first: 3.0, closest: 0.5 };
+            let mut e = exploration(|p| {
+                p.stall_rule = rule;
+                (p.max_counted_scans, p.min_entropy_change) = (1_000_000, 0.05);
+            });
             let mut before = 2.4;
             let mut counted = 0;
             for (distance, after) in steps {

@@ -182,8 +182,10 @@ impl Planner {
                     opened_or_closed.into_iter().for_each(|i| self.update_limit(map, i));
                 }
             }
-            if with_gain || reflects_anew {
-                self.beams.mark(change.cell, with_gain, reflects_anew);
+            if reflects_anew {
+                self.beams.mark_sights(change.cell);
+            } else if with_gain {
+                self.beams.mark_gains(change.cell, (change.after - change.before).max(0.0) + 1e-6);
             }
             self.update_limit(map, index);
         }
@@ -204,7 +206,7 @@ impl Planner {
             0.0
         };
         if self.cells.set_limit(index, limit) {
-            self.beams.mark(cell, false, true);
+            self.beams.mark_limit(cell);
         }
     }
 
@@ -233,8 +235,7 @@ impl Planner {
         let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
         let mut least = vec![f64::INFINITY; self.grid.len()];
         costs.reached().for_each(|index| least[index] = f64::NEG_INFINITY);
-        let upto = if self.parameters.strategy.uses_gain() { Upto::Bound } else { Upto::Sight };
-        self.beams.refresh(&self.cells, &least, upto);
+        self.beams.refresh(&self.cells, &least, Upto::Sight);
         let is_candidate = |i: &usize| costs.cost(*i).is_some() && self.beams.has_reason(*i);
         Candidates { indices: (0..self.grid.len()).filter(is_candidate).collect(), costs }
     }
