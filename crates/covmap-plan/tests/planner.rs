@@ -22,7 +22,12 @@ struct Setting {
 }
 
 fn setting(strategy: Strategy, bins: usize, change: impl Fn(&mut PlannerParameters)) -> Setting {
-    let model_parameters = ModelParameters { bins, usable_range: 1.5, ..ModelParameters::b21r() };
+    let mut model_parameters =
+        ModelParameters { bins, usable_range: 1.5, ..ModelParameters::b21r() };
+    if bins < 11 {
+        // Few bins cannot show a narrow Gaussian.
+        (model_parameters.sigma_out.base, model_parameters.sigma_in) = (0.12, 0.3);
+    }
     let model = SensorModel::new(&model_parameters, &SonarRing::b21r(), 0.1).unwrap();
     let mut parameters = PlannerParameters { strategy, ..PlannerParameters::standard() };
     change(&mut parameters);

@@ -310,7 +310,7 @@ mod tests {
                 let mut p = [0.0; 7];
                 map.read_posterior(cell, &mut p);
                 prop_assert!((p.iter().sum::<f64>() - 1.0).abs() < 1e-6);
-                prop_assert!(p.iter().all(|p| *p >= PROBABILITY_FLOOR / (1.0 + 8.0 * PROBABILITY_FLOOR)));
+                prop_assert!(p.iter().all(|p| *p >= PROBABILITY_FLOOR * (1.0 - 1e-6)));
                 prop_assert!((map.entropy(cell) - entropy(&p)).abs() < 1e-15);
             }
         }

@@ -6,11 +6,12 @@ pub const MIN_BINS: usize = 2;
 pub const MAX_BINS: usize = 64;
 
 /// The floor under every bin's probability before the last normalisation, so that every
-/// stored probability is at least `1e-6 / (1 + n·1e-6)`.
+/// stored probability is at least 1e-9, but for one part in a million by normalising and by
+/// rounding.
 ///
 /// Choice: the paper has no floor. With it every logarithm is finite and evidence can turn
 /// a cell round however sure it was.
-pub const PROBABILITY_FLOOR: f64 = 1e-6;
+pub const PROBABILITY_FLOOR: f64 = 1e-9;
 
 /// The coverage at which bin `bin` of `bins` stands: `bin / (bins − 1)`.
 ///
