@@ -20,6 +20,9 @@ const LIMIT: u8 = 16;
 /// The upper bound of the beam's gain holds, but a new one may be lower.
 const LOOSE: u8 = 32;
 
+/// View-points that one thread takes at a time.
+const PART: usize = 64;
+
 /// How far the values of view-points are brought up to date.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Upto {
@@ -147,7 +150,8 @@ impl BeamCache {
             .zip(self.horizon.par_chunks_mut(beams))
             .zip(self.gain.par_chunks_mut(beams))
             .enumerate()
-            .with_min_len(16);
+            // Wanted view-points lie close together: small parts share them out.
+            .with_max_len(PART);
         let uniform_share = self.uniform_share;
         view_points.for_each_init(
             Scratch::default,
