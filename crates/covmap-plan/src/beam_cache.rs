@@ -28,9 +28,9 @@ const PART: usize = 64;
 pub(crate) enum Upto {
     /// V(l) only.
     Sight,
-    /// V(l), and an upper bound of E[I] at least.
+    /// V(l), and an upper bound of E\[I\] at least.
     Bound,
-    /// V(l) and E[I].
+    /// V(l) and E\[I\].
     Gain,
 }
 
@@ -70,7 +70,7 @@ pub(crate) struct BeamCache {
     in_sight: Vec<u16>,
     horizon: Vec<u16>,
     flags: Vec<u8>,
-    /// E[I] of the beam; an upper bound of it while that is marked.
+    /// E\[I\] of the beam; an upper bound of it while that is marked.
     gain: Vec<f64>,
 }
 
@@ -217,7 +217,7 @@ impl BeamCache {
         self.slots(view_point).any(|slot| self.flags[slot] & REASON != 0)
     }
 
-    /// E[I(l)] of a view-point that is up to date, or an upper bound of it \[nats\].
+    /// E\[I(l)\] of a view-point that is up to date, or an upper bound of it \[nats\].
     pub(crate) fn gain(&self, view_point: usize) -> f64 {
         mean(&self.gain[self.slots(view_point)])
     }
@@ -272,8 +272,8 @@ impl Look<'_> {
         if cells.into_iter().any(is_reason) { REASON } else { 0 }
     }
 
-    /// An upper bound of the beam's E[I]: no outcome can take more from a cell than its
-    /// entropy, so E[I] ≤ Σ_i H(h(c_i)) · P(c_i is covered). One part in 10⁵ is added for
+    /// An upper bound of the beam's E\[I\]: no outcome can take more from a cell than its
+    /// entropy, so E\[I\] ≤ Σ_i H(h(c_i)) · P(c_i is covered). One part in 10⁵ is added for
     /// rounding.
     fn gain_bound(&self, cone: &BeamStencil, likelihood: &RangeLikelihood) -> f64 {
         let here = self.cells.bordered(self.view_point);

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct CandidateRecord {
     /// The view-point l.
     pub cell: Cell,
-    /// E[I(l)] \[nats\].
+    /// E\[I(l)\] \[nats\].
     pub gain: f64,
     /// d_c(l, x) \[m\].
     pub cost: f64,
@@ -45,7 +45,7 @@ pub struct Decision {
 pub(crate) enum Score {
     /// argmin d_c, Eq. (12).
     Closest,
-    /// argmax E[I], Eq. (15).
+    /// argmax E\[I\], Eq. (15).
     Gain,
     /// Eq. (16) with the weight α.
     Weighted(f64),
@@ -55,7 +55,7 @@ impl Score {
     /// Fills in the terms and the scores:
     ///
     /// ```text
-    /// α · E[I(l)] / max E[I(l')] − d_c(l, x) / max d_c(l', x)
+    /// α · E\[I(l)\] / max E\[I(l')\] − d_c(l, x) / max d_c(l', x)
     /// ```
     ///
     /// with both maxima over the same candidates. Choice: where no gain is positive the

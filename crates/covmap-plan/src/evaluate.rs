@@ -1,6 +1,6 @@
 //! Evaluating no more candidates than the choice needs.
 //!
-//! Every candidate has an upper bound of its E[I]; in the order of the bounds they are
+//! Every candidate has an upper bound of its E\[I\]; in the order of the bounds they are
 //! evaluated until none that is left can be among the best. The result is as if all had been.
 
 use crate::beam_cache::{BeamCache, Upto};

@@ -1,4 +1,4 @@
-//! E[I(l)]: how much a view-point is expected to tell. Eq. (13) and (14).
+//! E\[I(l)\]: how much a view-point is expected to tell. Eq. (13) and (14).
 //!
 //! This file is the equations as printed, in f64: the oracle. [`fast`] holds what runs.
 
@@ -15,7 +15,7 @@ use covmap_model::{Outcome, SensorModel};
 /// The expected information gain of a view-point, Eq. (14), averaged over the beams \[nats\]:
 ///
 /// ```text
-/// E[I(l)] = Σ_d p(d | c) · Σ_{c_i ∈ C(l,d)} I(h(c_i) | d)
+/// E\[I(l)\] = Σ_d p(d | c) · Σ_{c_i ∈ C(l,d)} I(h(c_i) | d)
 /// ```
 ///
 /// `view_point` is l; d runs over the ranges of the stencil and "no echo". I may be negative

@@ -16,7 +16,7 @@ use covmap_model::{SensorModel, cells_under_body, intercepted};
 use covmap_sonar::Scan;
 use nalgebra::Point2;
 
-/// The fast evaluation of E[I] is within this of the literal one, in units of the largest
+/// The fast evaluation of E\[I\] is within this of the literal one, in units of the largest
 /// absolute gain of the decision; candidates closer to the best are decided by the latter.
 pub const GAIN_TOLERANCE: f64 = 1e-5;
 

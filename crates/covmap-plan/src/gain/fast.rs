@@ -17,7 +17,7 @@ use covmap_model::SensorModel;
 use pulp::{Simd, WithSimd};
 
 /// Outcomes less likely than this are left out. One outcome gains or loses less than ln n in
-/// each of the beam's cells, so all of them together change a beam's E[I] by less than
+/// each of the beam's cells, so all of them together change a beam's E\[I\] by less than
 /// (K + 2) · cells · ln n times this: some 1e-8 nats for a sonar.
 const NEGLIGIBLE: f64 = 1e-10;
 
@@ -47,7 +47,7 @@ pub(crate) struct Scratch {
     changeable: Vec<Lanes>,
 }
 
-/// Evaluates E[I] of single beams.
+/// Evaluates E\[I\] of single beams.
 #[derive(Debug, Clone)]
 pub(crate) struct FastGain {
     tables: GainTables,
@@ -61,7 +61,7 @@ impl FastGain {
         Self { tables, outcomes: stencil.outcomes(), arch: pulp::Arch::new() }
     }
 
-    /// E[I] of a beam from the view-point with a row-major index, given its range likelihood
+    /// E\[I\] of a beam from the view-point with a row-major index, given its range likelihood
     /// in `scratch`.
     pub(crate) fn beam_gain(
         &self,
@@ -75,7 +75,7 @@ impl FastGain {
     }
 }
 
-/// One beam's E[I], compiled for each kind of vector registers; all give the same bits.
+/// One beam's E\[I\], compiled for each kind of vector registers; all give the same bits.
 struct BeamGain<'a> {
     fast: &'a FastGain,
     cells: &'a Cells,
