@@ -17,7 +17,7 @@ pub enum CellStatus {
     Exhausted,
     /// In sight of a reachable view-point: there is something left to do.
     Open,
-    /// Out of sight of all view-points that can be reached.
+    /// Out of sight of all view-points that can be reached, or out of scope.
     Unreachable,
 }
 

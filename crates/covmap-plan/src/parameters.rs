@@ -22,7 +22,7 @@ pub enum StallRule {
     /// As `Banded`, but the first stall exhausts the cell.
     Unbanded,
     /// The paper's words: the change of entropy is below the limit for five consecutive
-    /// measurements. It ends by the cap on counted scans only.
+    /// measurements. Cells that jitter end by the cap on counted scans only.
     Literal,
 }
 
@@ -100,7 +100,7 @@ pub enum PlannerError {
 }
 
 impl PlannerParameters {
-    /// The defaults of readings: ε = .6, .001, five; walls are targets; IG_CL(.3).
+    /// The defaults: ε = .6, .001, five; walls are targets; IG_CL(.3).
     pub fn standard() -> Self {
         Self {
             strategy: Strategy::IgCl { alpha: 0.3 },
