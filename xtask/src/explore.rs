@@ -130,8 +130,8 @@ fn report(summary: &Summary, written: &Path) {
     ));
     say::line(format!(
         "  completeness {}, wall recall {}",
-        percent(summary.completeness),
-        percent(summary.wall_recall)
+        percent(summary.score.completeness),
+        percent(summary.score.wall_recall)
     ));
     say::line(format!("  {}", written.display()));
 }

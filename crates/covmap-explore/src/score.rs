@@ -4,6 +4,7 @@ use crate::{Mission, Run};
 use covmap::{Cell, CoverageMap, Raster};
 use covmap_world::World;
 use nalgebra::Point2;
+use serde::{Deserialize, Serialize};
 
 /// The share of every bin that is spread evenly before a likelihood is taken, so that no
 /// truth is impossible: the same for every method.
@@ -23,7 +24,7 @@ pub struct Truth {
 }
 
 /// How good a map is.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// The share of the truly reachable cells that are known to be free.
     pub completeness: f64,

@@ -56,20 +56,9 @@ pub struct Summary {
     pub path_length_m: f64,
     /// The certificate in numbers.
     pub cells: CellCounts,
-    /// See [`Score`].
-    pub completeness: f64,
-    /// See [`Score`].
-    pub wall_recall: f64,
-    /// See [`Score`].
-    pub phantom: f64,
-    /// See [`Score`].
-    pub mae_mode: f64,
-    /// See [`Score`].
-    pub mae_mean: f64,
-    /// See [`Score`].
-    pub mean_log_likelihood: f64,
-    /// See [`Score`].
-    pub share_entropy_above_0_65: f64,
+    /// How good the map is.
+    #[serde(flatten)]
+    pub score: Score,
     /// Candidates with E\[I\] < 0, over all decisions.
     pub negative_gains: usize,
     /// Cells given up by the cap on counted scans.
@@ -102,13 +91,7 @@ impl Summary {
             bumps: run.bumps,
             path_length_m: run.path_length,
             cells: CellCounts::of(run.certificate.values()),
-            completeness: score.completeness,
-            wall_recall: score.wall_recall,
-            phantom: score.phantom,
-            mae_mode: score.mae_mode,
-            mae_mean: score.mae_mean,
-            mean_log_likelihood: score.mean_log_likelihood,
-            share_entropy_above_0_65: score.share_entropy_above_0_65,
+            score: *score,
             negative_gains: run.negative_gains,
             capped_cells: run.capped_cells,
             seconds,
