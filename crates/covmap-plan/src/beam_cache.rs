@@ -226,20 +226,33 @@ impl BeamCache {
     /// distance from the sensor, in row-major order; a cell in two beams once, with the
     /// shorter distance.
     pub(crate) fn cells_in_sight(&self, view_point: usize) -> Vec<(usize, f32)> {
-        let from = self.grid.cell(view_point);
-        let mut seen = Vec::new();
-        for (slot, (cone, offsets)) in
-            self.slots(view_point).zip(self.stencil.beams.iter().zip(&self.offsets))
-        {
-            let in_sight = usize::from(self.in_sight[slot]);
-            for (cell, distance) in cone.cells[..in_sight].iter().zip(&offsets.distance) {
-                let index = self.grid.index(from.offset(cell.dx, cell.dy));
-                seen.extend(index.map(|index| (index, *distance)));
-            }
-        }
+        let mut seen: Vec<(usize, f32)> = self.sights(view_point).collect();
         seen.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         seen.dedup_by_key(|(index, _)| *index);
         seen
+    }
+
+    /// Whether a view-point that is up to date holds a cell in sight that `is_wanted`, by its
+    /// row-major index and its distance from the sensor.
+    pub(crate) fn sees(
+        &self,
+        view_point: usize,
+        is_wanted: impl Fn(&(usize, f32)) -> bool,
+    ) -> bool {
+        self.sights(view_point).any(|cell| is_wanted(&cell))
+    }
+
+    /// The cells in sight of a view-point, beam by beam.
+    fn sights(&self, view_point: usize) -> impl Iterator<Item = (usize, f32)> {
+        let from = self.grid.cell(view_point);
+        let beams = self.stencil.beams.iter().zip(&self.offsets);
+        self.slots(view_point).zip(beams).flat_map(move |(slot, (cone, offsets))| {
+            let in_sight = usize::from(self.in_sight[slot]);
+            let cells = cone.cells[..in_sight].iter().zip(&offsets.distance);
+            cells.filter_map(move |(cell, distance)| {
+                Some((self.grid.index(from.offset(cell.dx, cell.dy))?, *distance))
+            })
+        })
     }
 
     fn slots(&self, view_point: usize) -> std::ops::Range<usize> {

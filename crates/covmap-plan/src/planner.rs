@@ -403,9 +403,9 @@ impl Planner {
     fn window_offers(&self, candidate: usize) -> bool {
         let Some(window) = &self.window else { return true };
         let is_open = |&(index, distance): &(usize, f32)| {
-            window.holds(index) && distance <= self.cells.limit(self.cells.bordered(index))
+            distance <= self.cells.limit(self.cells.bordered(index)) && window.holds(index)
         };
-        window.holds(candidate) && self.beams.cells_in_sight(candidate).iter().any(is_open)
+        window.holds(candidate) && self.beams.sees(candidate, is_open)
     }
 
     /// What became of every cell, for a robot in the cell `from`: explored means that none
