@@ -221,15 +221,6 @@ impl Planner {
         self.beams.cells_in_sight(index)
     }
 
-    /// The open cells in sight of a view-point: by their row-major index, with their distance
-    /// from the sensor and the distance up to which they are a reason to measure \[m\].
-    pub fn open_cells(&mut self, view_point: Cell) -> Vec<(usize, f32, f32)> {
-        let in_sight = self.cells_in_sight(view_point).into_iter();
-        let limit = |index: usize| self.cells.limit(self.cells.bordered(index));
-        let with_limit = |(index, distance)| (index, distance, limit(index));
-        in_sight.map(with_limit).filter(|(_, distance, limit)| distance <= limit).collect()
-    }
-
     /// L(c) and the ways there, for a robot in the cell `from`.
     fn candidates(&mut self, from: Cell) -> Candidates {
         let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
