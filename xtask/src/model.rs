@@ -33,9 +33,11 @@ pub(crate) fn run(arguments: &Model) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// From r/2 to the last cell that an echo updates, in steps of r/10 \[m\].
+/// From r/2 to .20 m behind the end cell, as in Fig. 3, in steps of r/10 \[m\]; farther if
+/// the echo updates cells farther behind.
 fn cell_distances(model: &SensorModel, range: f64) -> Vec<f64> {
     let resolution = model.resolution();
-    let last = model.reach(Outcome::Echo(range)) + 1e-9 * resolution;
+    let behind = model.parameters().behind.max(0.20);
+    let last = range + 0.5 * resolution + behind + 1e-9 * resolution;
     (5u32..).map(|i| f64::from(i) * resolution / 10.0).take_while(|d| *d <= last).collect()
 }

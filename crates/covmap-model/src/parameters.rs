@@ -135,10 +135,10 @@ impl ModelParameters {
             usable_range: 3.0,
             sigma_out: Linear { base: 0.06, per_cell_distance: 0.02, per_range: 0.02 },
             sigma_in: 0.22,
-            gamma: Linear { base: 0.05, per_cell_distance: 0.05, per_range: 0.05 },
-            behind: 0.20,
+            gamma: Linear { base: 0.05, per_cell_distance: 0.4, per_range: 0.2 },
+            behind: 0.10,
             no_echo: NoEchoParameters { range: 1.0, gamma: 1.0 },
-            tempering: 1.0,
+            tempering: 0.7,
             footprint: FootprintRule::Sectors { half_angle: 7.5 * std::f64::consts::PI / 180.0 },
         }
     }

@@ -200,9 +200,11 @@ mod tests {
 
     #[test]
     fn evidence_ends_twenty_centimetres_behind() {
-        assert!((model().reach(Outcome::Echo(1.0)) - 1.25).abs() < 1e-12);
-        assert_eq!(model().reach(Outcome::NoEcho), 1.0);
-        assert_eq!(model().reach(Outcome::Beyond(7.0)), 3.0);
+        let parameters = ModelParameters { behind: 0.2, ..ModelParameters::b21r() };
+        let model = SensorModel::new(&parameters, &SonarRing::b21r(), 0.1).unwrap();
+        assert!((model.reach(Outcome::Echo(1.0)) - 1.25).abs() < 1e-12);
+        assert_eq!(model.reach(Outcome::NoEcho), 1.0);
+        assert_eq!(model.reach(Outcome::Beyond(7.0)), 3.0);
     }
 
     #[test]

@@ -13,12 +13,24 @@ pub enum CellStatus {
     Outside,
     /// Known, with an entropy of at most ε.
     Resolved,
-    /// Its entropy did not fall any longer, from any distance.
+    /// Its entropy did not fall any longer, from any distance, or all view-points that hold
+    /// it in sight are spent.
     Exhausted,
     /// In sight of a reachable view-point: there is something left to do.
     Open,
     /// Out of sight of all view-points that can be reached, or out of scope.
     Unreachable,
+}
+
+/// From what kind of reachable view-point a cell is in sight within its limit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum InSight {
+    /// From none.
+    Nowhere,
+    /// From such only that tell nothing new.
+    Spent,
+    /// From a candidate.
+    Candidate,
 }
 
 /// How the measuring of one cell went on so far.
@@ -120,14 +132,13 @@ impl Exploration {
         }
     }
 
-    /// The status of a cell of which `in_sight` says whether a reachable view-point holds it
-    /// in sight within its limit.
+    /// The status of a cell.
     pub(crate) fn status(
         &self,
         index: usize,
         known: bool,
         entropy: f64,
-        in_sight: bool,
+        in_sight: InSight,
     ) -> CellStatus {
         if self.outside[index] {
             CellStatus::Outside
@@ -135,10 +146,12 @@ impl Exploration {
             CellStatus::Resolved
         } else if self.progress[index].given_up {
             CellStatus::Exhausted
-        } else if in_sight {
-            CellStatus::Open
         } else {
-            CellStatus::Unreachable
+            match in_sight {
+                InSight::Candidate => CellStatus::Open,
+                InSight::Spent => CellStatus::Exhausted,
+                InSight::Nowhere => CellStatus::Unreachable,
+            }
         }
     }
 
@@ -226,9 +239,10 @@ mod tests {
     #[test]
     fn a_cell_with_low_entropy_is_resolved() {
         let e = exploration(|_| ());
-        assert_eq!(e.status(0, true, 0.6, true), CellStatus::Resolved);
-        assert_eq!(e.status(0, true, 0.61, true), CellStatus::Open);
-        assert_eq!(e.status(0, false, 2.4, false), CellStatus::Unreachable);
+        assert_eq!(e.status(0, true, 0.6, InSight::Candidate), CellStatus::Resolved);
+        assert_eq!(e.status(0, true, 0.61, InSight::Candidate), CellStatus::Open);
+        assert_eq!(e.status(0, true, 0.61, InSight::Spent), CellStatus::Exhausted);
+        assert_eq!(e.status(0, false, 2.4, InSight::Nowhere), CellStatus::Unreachable);
     }
 
     #[test]
@@ -240,7 +254,7 @@ mod tests {
             (0..6).for_each(|_| count(&mut e, distance, 1.0, 1.0));
             assert!((e.limit(0, true, 1.0) - limit).abs() < 1e-6, "{distance}");
         }
-        assert_eq!(e.status(0, true, 1.0, true), CellStatus::Exhausted);
+        assert_eq!(e.status(0, true, 1.0, InSight::Candidate), CellStatus::Exhausted);
         assert_eq!(e.capped_cells(), 0);
     }
 
@@ -249,25 +263,28 @@ mod tests {
         let mut e = exploration(|p| p.stall_rule = StallRule::Literal);
         // Jitter between two bins is change, for ever:
         (0..500).for_each(|i| count(&mut e, 1.0, 1.0, if i % 2 == 0 { 1.01 } else { 0.99 }));
-        assert_eq!(e.status(0, true, 1.0, true), CellStatus::Open);
+        assert_eq!(e.status(0, true, 1.0, InSight::Candidate), CellStatus::Open);
         (0..5).for_each(|_| count(&mut e, 1.0, 1.0, 1.0));
-        assert_eq!(e.status(0, true, 1.0, true), CellStatus::Exhausted);
+        assert_eq!(e.status(0, true, 1.0, InSight::Candidate), CellStatus::Exhausted);
     }
 
     #[test]
     fn the_cap_is_reported() {
         let mut e = exploration(|p| p.max_counted_scans = 3);
         (0..3).for_each(|_| count(&mut e, 1.0, 1.0, 0.9));
-        assert_eq!((e.status(0, true, 1.0, true), e.capped_cells()), (CellStatus::Exhausted, 1));
+        assert_eq!(
+            (e.status(0, true, 1.0, InSight::Candidate), e.capped_cells()),
+            (CellStatus::Exhausted, 1)
+        );
     }
 
     #[test]
     fn a_counting_strategy_reads_no_entropy() {
         let mut e =
             exploration(|p| p.strategy = Strategy::Count { times: 2.0, half_distance: None });
-        assert_eq!(e.status(0, true, 0.0, true), CellStatus::Open);
+        assert_eq!(e.status(0, true, 0.0, InSight::Candidate), CellStatus::Open);
         e.add_counts(|| vec![(Cell::new(0, 0), 1.0), (Cell::new(0, 0), 2.0)]);
-        assert_eq!(e.status(0, true, 2.0, true), CellStatus::Resolved);
+        assert_eq!(e.status(0, true, 2.0, InSight::Candidate), CellStatus::Resolved);
     }
 
     proptest! {
@@ -291,7 +308,7 @@ mod tests {
             }
             // 4 bands of at most 5·(⌊ln 11/.05⌋ + 1) scans.
             prop_assert!(counted <= 4 * 5 * 49, "{}", counted);
-            prop_assert_eq!(e.status(0, true, 1.0, true), CellStatus::Exhausted);
+            prop_assert_eq!(e.status(0, true, 1.0, InSight::Candidate), CellStatus::Exhausted);
         }
     }
 }

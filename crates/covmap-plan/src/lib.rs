@@ -24,6 +24,7 @@ mod decision;
 mod evaluate;
 mod exploration;
 mod gain;
+mod measured;
 mod parameters;
 mod planner;
 mod range_likelihood;

@@ -60,6 +60,9 @@ pub struct PlannerParameters {
     pub stall_limit: u32,
     /// When a cell is given up.
     pub stall_rule: StallRule,
+    /// A view-point nearer than this to where a scan was taken tells nothing new \[m\]; 0 is
+    /// the paper. Counting strategies, which count just that, do not ask.
+    pub scan_spacing: f64,
     /// A practical cap on the scans counted for one cell; reported whenever it fires.
     pub max_counted_scans: u32,
     /// Which cells must be explored.
@@ -108,6 +111,7 @@ impl PlannerParameters {
             min_entropy_change: 0.001,
             stall_limit: 5,
             stall_rule: StallRule::Banded { first: 1.0, closest: 0.5 },
+            scan_spacing: 0.3,
             max_counted_scans: 520,
             scope: Scope::Observable,
             traversable_coverage: 0.2,
@@ -131,6 +135,7 @@ impl PlannerParameters {
             within("stall_rule.first", first, closest, 100.0)?;
             within("stall_rule.closest", closest, 1e-2, 100.0)?;
         }
+        within("scan_spacing", self.scan_spacing, 0.0, 100.0)?;
         within("max_counted_scans", f64::from(self.max_counted_scans), 1.0, 1e6)?;
         within("traversable_coverage", self.traversable_coverage, 0.0, 0.999)?;
         within("unknown_reflection", self.unknown_reflection, 0.0, 1.0)?;

@@ -4,7 +4,8 @@ use crate::beam_cache::{BeamCache, Upto};
 use crate::cells::Cells;
 use crate::decision::{Score, best};
 use crate::evaluate::{Evaluation, REPORTED};
-use crate::exploration::{CountedScan, Exploration};
+use crate::exploration::{CountedScan, Exploration, InSight};
+use crate::measured::Measured;
 use crate::traversable::Traversable;
 use crate::window::Window;
 use crate::{
@@ -41,6 +42,7 @@ pub struct Planner {
     traversable: Traversable,
     exploration: Exploration,
     beams: BeamCache,
+    measured: Measured,
     window: Option<Window>,
     /// The chosen view-point, and what was in sight of it when it was chosen.
     target: Option<(Cell, Vec<(usize, f32)>)>,
@@ -83,6 +85,8 @@ impl Planner {
             _ => None,
         };
         let usable_range = model.parameters().usable_range;
+        let counts = parameters.strategy.counting().is_some();
+        let scan_spacing = if counts { 0.0 } else { parameters.scan_spacing };
         let mut planner = Self {
             exploration: Exploration::new(parameters, usable_range, outside),
             traversable: Traversable::new(grid, radius),
@@ -93,6 +97,7 @@ impl Planner {
             radius,
             cells,
             beams,
+            measured: Measured::new(grid, scan_spacing),
             window,
             target: None,
         };
@@ -126,6 +131,7 @@ impl Planner {
             .collect();
         let weights: Vec<f64> = expected.iter().map(|s| self.exploration.weight(s.index)).collect();
         self.exploration.add_counts(|| intercepted(&self.model, &self.grid, scan));
+        self.measured.note(scan.pose.translation.vector.into());
         self.take_over(map, changes);
         for (scan, weight) in expected.into_iter().zip(weights) {
             let touched = self.exploration.weight(scan.index) > weight;
@@ -221,13 +227,20 @@ impl Planner {
         self.beams.cells_in_sight(index)
     }
 
-    /// L(c) and the ways there, for a robot in the cell `from`.
+    /// L(c) and the ways there, for a robot in the cell `from`. Spent view-points are left
+    /// out, unless the robot can reach none but those that one scan spends: it measures
+    /// again until it can leave, or there is no reason left.
     fn candidates(&mut self, from: Cell) -> Candidates {
         let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
         let mut least = vec![f64::INFINITY; self.grid.len()];
         costs.reached().for_each(|index| least[index] = f64::NEG_INFINITY);
         self.beams.refresh(&self.cells, &least, Upto::Sight);
-        let is_candidate = |i: &usize| costs.cost(*i).is_some() && self.beams.has_reason(*i);
+        let trapped = costs.reached().all(|i| self.measured.is_near(i, from));
+        let is_candidate = |i: &usize| {
+            costs.cost(*i).is_some()
+                && (trapped || !self.measured.is_spent(*i))
+                && self.beams.has_reason(*i)
+        };
         Candidates { indices: (0..self.grid.len()).filter(is_candidate).collect(), costs }
     }
 
@@ -402,10 +415,15 @@ impl Planner {
     /// What became of every cell, for a robot in the cell `from`: explored means that none
     /// is [`CellStatus::Open`].
     pub fn certificate(&mut self, map: &CoverageMap, from: Cell) -> Raster<CellStatus> {
-        let mut in_sight = vec![false; self.grid.len()];
-        for candidate in self.candidates(from).indices {
-            for (index, distance) in self.beams.cells_in_sight(candidate) {
-                in_sight[index] |= distance <= self.cells.limit(self.cells.bordered(index));
+        let mut in_sight = vec![InSight::Nowhere; self.grid.len()];
+        let candidates = self.candidates(from);
+        for view_point in candidates.costs.reached() {
+            let is_candidate = candidates.indices.binary_search(&view_point).is_ok();
+            let sight = if is_candidate { InSight::Candidate } else { InSight::Spent };
+            for (index, distance) in self.beams.cells_in_sight(view_point) {
+                if distance <= self.cells.limit(self.cells.bordered(index)) {
+                    in_sight[index] = in_sight[index].max(sight);
+                }
             }
         }
         Raster::from_fn(self.grid, |cell| {
@@ -420,7 +438,12 @@ impl Planner {
     pub fn share_finished(&self, map: &CoverageMap) -> f64 {
         let status = |index: usize| {
             let cell = self.grid.cell(index);
-            self.exploration.status(index, map.is_known(cell), map.entropy(cell), true)
+            self.exploration.status(
+                index,
+                map.is_known(cell),
+                map.entropy(cell),
+                InSight::Candidate,
+            )
         };
         let count = |wanted: fn(CellStatus) -> bool| {
             (0..self.grid.len())

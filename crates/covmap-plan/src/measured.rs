@@ -1,0 +1,75 @@
+//! From where it was measured.
+
+use covmap::{Cell, Grid};
+use nalgebra::Point2;
+
+/// Which view-points are spent: too near to where a scan was taken to tell anything new.
+///
+/// Choice: readings from one place share their errors (the same wall that does not answer,
+/// the same width of the cone), so that repeating them adds confidence and no knowledge.
+/// The paper has no such rule: spacing 0 spends nothing.
+#[derive(Debug, Clone)]
+pub(crate) struct Measured {
+    grid: Grid,
+    spacing: f64,
+    spent: Vec<bool>,
+}
+
+impl Measured {
+    pub(crate) fn new(grid: Grid, spacing: f64) -> Self {
+        Self { grid, spacing, spent: vec![false; grid.len()] }
+    }
+
+    /// Takes note of a scan.
+    pub(crate) fn note(&mut self, at: Point2<f64>) {
+        #[allow(clippy::cast_possible_truncation, reason = "at most some 10^5 cells")]
+        let reach = (self.spacing / self.grid.resolution()).ceil().min(1e5) as i32;
+        let here = self.grid.unbounded_cell_at(at);
+        let square = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
+        for (dx, dy) in square {
+            if let Some(index) = self.grid.index(here.offset(dx, dy)) {
+                self.spent[index] |= self.is_within_spacing(index, at);
+            }
+        }
+    }
+
+    fn is_within_spacing(&self, index: usize, of: Point2<f64>) -> bool {
+        (self.grid.center(self.grid.cell(index)) - of).norm() < self.spacing - 1e-9
+    }
+
+    /// Whether a scan from one view-point spends another.
+    pub(crate) fn is_near(&self, index: usize, view_point: Cell) -> bool {
+        self.is_within_spacing(index, self.grid.center(view_point))
+    }
+
+    pub(crate) fn is_spent(&self, index: usize) -> bool {
+        self.spent[index]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spent_after_one_scan(spacing: f64) -> String {
+        let grid = Grid::new(Point2::origin(), 0.1, 7, 5).unwrap();
+        let mut measured = Measured::new(grid, spacing);
+        measured.note(grid.center(Cell::new(2, 2)));
+        let row = |y: i32| {
+            let mark = |x| grid.index(Cell::new(x, y)).is_some_and(|i| measured.is_spent(i));
+            (0..7).map(|x| if mark(x) { '#' } else { '.' }).collect::<String>() + "\n"
+        };
+        (0..5).map(row).collect()
+    }
+
+    #[test]
+    fn view_points_nearer_than_the_spacing_are_spent() {
+        let disc = ".......\n.###...\n.###...\n.###...\n.......\n";
+        assert_eq!(spent_after_one_scan(0.2), disc);
+    }
+
+    #[test]
+    fn without_a_spacing_nothing_is_spent() {
+        assert!(!spent_after_one_scan(0.0).contains('#'));
+    }
+}
