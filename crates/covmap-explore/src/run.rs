@@ -98,6 +98,8 @@ struct Explorer<'a, R, H> {
     at: Point2<f64>,
     cell: Cell,
     left_start: bool,
+    /// The robot does not fit on the centre of its cell: it stays where it is.
+    cramped: bool,
     /// How far the robot drove since it last measured [m].
     since_scan: f64,
     scans: Vec<Scan>,
@@ -135,6 +137,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
             at,
             cell,
             left_start: false,
+            cramped: false,
             since_scan: 0.0,
             scans: Vec::new(),
             trajectory: vec![at],
@@ -153,9 +156,9 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
             if self.is_budget_spent() {
                 return ControlFlow::Continue(Ending::BudgetSpent);
             }
-            let path = self.way(&decision);
+            let (path, stays) = (self.way(&decision), decision.path.is_empty());
             self.decide(decision)?;
-            if self.drive(&path)? && !self.is_budget_spent() {
+            if (self.drive(&path)? || stays) && !self.is_budget_spent() {
                 self.scan()?;
             }
         }
@@ -167,9 +170,10 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         self.mission.limits.max_scans.is_some_and(|most| self.scans.len() >= most)
     }
 
-    /// The cells to drive over. To stay in its cell means to go to its centre.
+    /// The cells to drive over. To stay in its cell means to go to its centre, if it can.
     fn way(&self, decision: &Decision) -> Vec<Cell> {
-        if decision.path.is_empty() { vec![decision.target] } else { decision.path.clone() }
+        let stays = decision.path.is_empty() && !self.cramped;
+        if stays { vec![decision.target] } else { decision.path.clone() }
     }
 
     fn decide(&mut self, decision: Decision) -> ControlFlow<()> {
@@ -195,9 +199,11 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         for cell in path {
             let center = self.mission.grid.center(*cell);
             if !self.drive_straight(center, *cell)? {
+                self.cramped |= self.cell == *cell;
                 return ControlFlow::Continue(false);
             }
             self.left_start |= self.cell != *cell;
+            self.cramped = false;
             self.cell = *cell;
             self.planner.stand_on(*cell);
         }

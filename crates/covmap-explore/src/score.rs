@@ -119,5 +119,6 @@ fn log_likelihood(map: &CoverageMap, cell: Cell, truth: f64) -> f64 {
 fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
     let count = values.len().max(1) as f64;
-    values.sum::<f64>() / count
+    // A sum of nothing would be −0.
+    values.fold(0.0, |sum, value| sum + value) / count
 }

@@ -10,14 +10,14 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum FileError {
     /// The operating system refused.
-    #[error("{}: cannot be {action}: {source}", path.display())]
+    #[error("{}: cannot be {action}: {reason}", path.display())]
     Io {
         /// The file or folder.
         path: PathBuf,
         /// What was tried: "read", "written", …
         action: &'static str,
         /// What the operating system said.
-        source: io::Error,
+        reason: io::Error,
     },
     /// The file is larger than anything of its kind.
     #[error("{}: has more than {limit} bytes, which is too large for a file of this kind", path.display())]
@@ -77,20 +77,20 @@ pub enum FileError {
         message: String,
     },
     /// The image of a map is not what its header says.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {reason}", path.display())]
     Pgm {
         /// The image.
         path: PathBuf,
         /// What is wrong with it.
-        source: PgmError,
+        reason: PgmError,
     },
     /// The description of a map_server map says something impossible.
-    #[error("{}: {source}", path.display())]
+    #[error("{}: {reason}", path.display())]
     MapServer {
         /// The YAML file.
         path: PathBuf,
         /// What is wrong with it.
-        source: MapServerError,
+        reason: MapServerError,
     },
     /// The output folder must not be replaced.
     #[error("{}: {reason}", path.display())]
@@ -126,7 +126,7 @@ impl FileError {
     /// Turns the refusal of the operating system into an error that names the file.
     pub(crate) fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_path_buf();
-        move |source| Self::Io { path, action, source }
+        move |reason| Self::Io { path, action, reason }
     }
 }
 

@@ -73,6 +73,27 @@ fn a_small_room_is_explored_to_its_end() {
 }
 
 #[test]
+fn a_robot_that_cannot_leave_its_start_says_so() {
+    let shell = Shell::new();
+    let wall = |from, to| {
+        format!("(shape: Wall(from: {from}, to: {to}, thickness: 0.1), surface: Rough),")
+    };
+    let closet = [
+        wall("(0.0, 0.6)", "(2.0, 0.6)"),
+        wall("(0.0, 1.4)", "(2.0, 1.4)"),
+        wall("(0.6, 0.0)", "(0.6, 2.0)"),
+        wall("(1.4, 0.0)", "(1.4, 2.0)"),
+    ];
+    let start = "start: (x: 1.0, y: 1.0, heading: 0.0)";
+    let extent = "extent: (width: 2.0, height: 2.0)";
+    let world = format!("(name: \"closet\", {extent}, {start}, obstacles: [{}])", closet.concat());
+    shell.write("closet.ron", world);
+    let typed = shell.expect("explore closet.ron --resolution 0.2 --out run", 4);
+    assert!(typed.out.contains("could not leave its start"), "{typed:?}");
+    assert_eq!(shell.json("run/summary.json")["ending"], "StartBlocked");
+}
+
+#[test]
 fn quiet_is_quiet() {
     let shell = Shell::new();
     let typed = shell.expect(&format!("{} --quiet", short_run()), 3);

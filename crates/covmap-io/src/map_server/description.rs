@@ -81,7 +81,7 @@ impl Description {
     /// Reads the YAML file of a map.
     pub(crate) fn load(path: &Path) -> Result<Self, FileError> {
         let keys: Keys = parse(path, &read_text(path, MAX_YAML)?)?;
-        Self::new(keys).map_err(|source| FileError::MapServer { path: path.to_path_buf(), source })
+        Self::new(keys).map_err(|reason| FileError::MapServer { path: path.to_path_buf(), reason })
     }
 
     fn new(keys: Keys) -> Result<Self, MapServerError> {

@@ -60,11 +60,11 @@ pub fn load_map_server(yaml: impl AsRef<Path>) -> Result<MapServerMap, FileError
     let description = Description::load(yaml)?;
     let image = yaml.parent().unwrap_or(Path::new("")).join(&description.image);
     let pgm = Pgm::from_bytes(&read_bytes(&image, MAX_FILE)?)
-        .map_err(|source| FileError::Pgm { path: image, source })?;
+        .map_err(|reason| FileError::Pgm { path: image, reason })?;
     let grid = Grid::new(description.lower_left, description.resolution, pgm.width, pgm.height)
         .map_err(|error| FileError::MapServer {
             path: yaml.to_path_buf(),
-            source: MapServerError::Grid(error),
+            reason: MapServerError::Grid(error),
         })?;
     let top = pgm.height - 1;
     let mut cells = Raster::filled(grid, MapCell::Unknown);
