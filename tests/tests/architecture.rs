@@ -5,13 +5,14 @@ use crate::root;
 use std::collections::BTreeSet;
 
 /// Every crate, with the crates of covmap that it may use.
-const ARROWS: [(&str, &[&str]); 7] = [
+const ARROWS: [(&str, &[&str]); 8] = [
     ("covmap", &[]),
     ("covmap-sonar", &["covmap"]),
     ("covmap-io", &["covmap", "covmap-sonar"]),
     ("covmap-model", &["covmap", "covmap-sonar", "covmap-io"]),
     ("covmap-world", &["covmap", "covmap-sonar", "covmap-io"]),
     ("covmap-plan", &["covmap", "covmap-sonar", "covmap-io", "covmap-model"]),
+    ("covmap-fit", &["covmap", "covmap-sonar", "covmap-io", "covmap-model"]),
     (
         "covmap-explore",
         &["covmap", "covmap-sonar", "covmap-io", "covmap-model", "covmap-world", "covmap-plan"],

@@ -1,14 +1,11 @@
 //! A map against the truth.
 
 use crate::{Mission, Run};
-use covmap::{Cell, CoverageMap, Raster};
+use covmap::{Cell, CoverageMap, LIKELIHOOD_FLOOR, Raster, log_likelihood};
 use covmap_world::World;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
-/// The share of every bin that is spread evenly before a likelihood is taken, so that no
-/// truth is impossible: the same for every method.
-const LIKELIHOOD_FLOOR: f64 = 0.001;
 /// A cell of which at least this much is covered is solid.
 const SOLID: f64 = 0.5;
 
@@ -89,30 +86,12 @@ impl Truth {
             phantom: share(&self.reachable, &|c| map.is_known(c) && map.mode(c) >= SOLID),
             mae_mode: over(&|cell, truth| (mode(cell) - truth).abs()),
             mae_mean: over(&|cell, truth| (map.mean(cell) - truth).abs()),
-            mean_log_likelihood: over(&|cell, truth| log_likelihood(map, cell, truth)),
+            mean_log_likelihood: over(&|cell, truth| {
+                log_likelihood(map.histogram(cell).probabilities(), truth, LIKELIHOOD_FLOOR)
+            }),
             share_entropy_above_0_65: over(&|cell, _| f64::from(map.entropy(cell) > 0.65)),
         }
     }
-}
-
-/// The log-likelihood of the true coverage x of a cell, between the bins k and k + 1 with
-/// the fraction t:
-///
-/// ```text
-/// (1 − t)·log p'_k + t·log p'_{k+1},   p' = (1 − η)·p + η/n
-/// ```
-fn log_likelihood(map: &CoverageMap, cell: Cell, truth: f64) -> f64 {
-    let histogram = map.histogram(cell);
-    let p = histogram.probabilities();
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
-    let (n, last) = (p.len() as f64, (p.len() - 1) as f64);
-    let place = truth.clamp(0.0, 1.0) * last;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
-    let k = (place.floor() as usize).min(p.len() - 2);
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
-    let t = place - k as f64;
-    let log = |p: f64| libm::log((1.0 - LIKELIHOOD_FLOOR) * p + LIKELIHOOD_FLOOR / n);
-    (1.0 - t) * log(p[k]) + t * log(p[k + 1])
 }
 
 /// The mean of some numbers; 0 for none.

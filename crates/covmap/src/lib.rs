@@ -30,10 +30,12 @@ mod belief_file;
 mod coverage_map;
 mod grid;
 mod histogram;
+mod proper_score;
 mod raster;
 
 pub use belief_file::BeliefFileError;
 pub use coverage_map::{Change, CoverageMap, MapError};
 pub use grid::{Cell, Grid, GridError, MAX_CELLS};
 pub use histogram::{Histogram, MAX_BINS, MIN_BINS, PROBABILITY_FLOOR, bin_coverage, product};
+pub use proper_score::{LIKELIHOOD_FLOOR, crps, log_likelihood, randomised_pit};
 pub use raster::Raster;

@@ -1,0 +1,195 @@
+//! The free parameters, each with its bounds.
+
+use covmap_model::{FootprintRule, ModelParameters};
+use serde::{Deserialize, Serialize};
+
+/// A parameter of the sensor model that can be fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum Parameter {
+    /// γ at distance and range 0, a density level.
+    GammaBase,
+    /// The slope of γ in the cell's distance \[1/m\].
+    GammaPerCellDistance,
+    /// The slope of γ in the range \[1/m\].
+    GammaPerRange,
+    /// σ_out at distance and range 0.
+    SigmaOutBase,
+    /// The slope of σ_out in the cell's distance \[1/m\].
+    SigmaOutPerCellDistance,
+    /// The slope of σ_out in the range \[1/m\].
+    SigmaOutPerRange,
+    /// σ_in.
+    SigmaIn,
+    /// How far behind the end cells are covered \[m\].
+    Behind,
+    /// The half-angle of the footprint \[rad\].
+    HalfAngle,
+    /// The usable range \[m\].
+    UsableRange,
+    /// Up to where no echo marks cells as free \[m\].
+    NoEchoRange,
+    /// γ of these cells.
+    NoEchoGamma,
+    /// The tempering exponent.
+    Tempering,
+}
+
+impl Parameter {
+    /// Where the parameter stands.
+    fn place(self, p: &mut ModelParameters) -> &mut f64 {
+        match self {
+            Self::GammaBase => &mut p.gamma.base,
+            Self::GammaPerCellDistance => &mut p.gamma.per_cell_distance,
+            Self::GammaPerRange => &mut p.gamma.per_range,
+            Self::SigmaOutBase => &mut p.sigma_out.base,
+            Self::SigmaOutPerCellDistance => &mut p.sigma_out.per_cell_distance,
+            Self::SigmaOutPerRange => &mut p.sigma_out.per_range,
+            Self::SigmaIn => &mut p.sigma_in,
+            Self::Behind => &mut p.behind,
+            Self::HalfAngle => match &mut p.footprint {
+                FootprintRule::Sectors { half_angle } | FootprintRule::Cones { half_angle } => {
+                    half_angle
+                }
+            },
+            Self::UsableRange => &mut p.usable_range,
+            Self::NoEchoRange => &mut p.no_echo.range,
+            Self::NoEchoGamma => &mut p.no_echo.gamma,
+            Self::Tempering => &mut p.tempering,
+        }
+    }
+
+    /// Its value.
+    pub fn get(self, parameters: &ModelParameters) -> f64 {
+        *self.place(&mut parameters.clone())
+    }
+
+    /// Sets it. Whether the parameters still make a model is checked where one is built.
+    pub fn set(self, parameters: &mut ModelParameters, value: f64) {
+        *self.place(parameters) = value;
+    }
+}
+
+/// A free parameter and the interval in which it is sought.
+///
+/// The search walks over \[0, 1\]; `place` in it is `from + (to − from)·place`, or, if `from`
+/// is above 0, `from·(to/from)^place`: scales are sought in steps of a factor.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Axis {
+    /// The parameter.
+    pub parameter: Parameter,
+    /// Its smallest value.
+    pub from: f64,
+    /// Its largest value.
+    pub to: f64,
+}
+
+/// Why an axis cannot be searched.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum AxisError {
+    /// The bounds are no interval.
+    #[error("{parameter:?}: from {from} and to {to} must be finite, from ≥ 0, and from < to")]
+    Bounds {
+        /// The parameter.
+        parameter: Parameter,
+        /// Lower bound.
+        from: f64,
+        /// Upper bound.
+        to: f64,
+    },
+    /// The parameter has two axes.
+    #[error("{0:?} has two axes")]
+    Twice(Parameter),
+}
+
+impl Axis {
+    /// Checks some axes.
+    ///
+    /// # Errors
+    /// If bounds are no interval, or a parameter has two axes.
+    pub fn check(axes: &[Self]) -> Result<(), AxisError> {
+        for (i, &Self { parameter, from, to }) in axes.iter().enumerate() {
+            if !(from.is_finite() && to.is_finite() && 0.0 <= from && from < to) {
+                return Err(AxisError::Bounds { parameter, from, to });
+            }
+            if axes[..i].iter().any(|other| other.parameter == parameter) {
+                return Err(AxisError::Twice(parameter));
+            }
+        }
+        Ok(())
+    }
+
+    /// The value at a place in \[0, 1\].
+    pub fn value(&self, place: f64) -> f64 {
+        let Self { from, to, .. } = *self;
+        let value = if from > 0.0 {
+            from * libm::pow(to / from, place)
+        } else {
+            from + (to - from) * place
+        };
+        value.clamp(from, to)
+    }
+
+    /// The place in \[0, 1\] of the value that some parameters have.
+    pub fn place(&self, parameters: &ModelParameters) -> f64 {
+        let Self { parameter, from, to } = *self;
+        let value = parameter.get(parameters).clamp(from, to);
+        let place = if from > 0.0 {
+            libm::log(value / from) / libm::log(to / from)
+        } else {
+            (value - from) / (to - from)
+        };
+        place.clamp(0.0, 1.0)
+    }
+
+    /// Sets the parameter to the value at a place in \[0, 1\].
+    pub fn set(&self, parameters: &mut ModelParameters, place: f64) {
+        self.parameter.set(parameters, self.value(place));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn what_is_set_is_found_again(place in 0.0..1.0f64, from in 0.0..0.5f64) {
+            let axis = Axis { parameter: Parameter::NoEchoGamma, from, to: 2.0 };
+            let mut parameters = ModelParameters::b21r();
+            axis.set(&mut parameters, place);
+            prop_assert!((axis.place(&parameters) - place).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn every_parameter_is_another_one() {
+        use Parameter::{
+            Behind, GammaBase, GammaPerCellDistance, GammaPerRange, HalfAngle, NoEchoGamma,
+            NoEchoRange, SigmaIn, SigmaOutBase, SigmaOutPerCellDistance, SigmaOutPerRange,
+            Tempering, UsableRange,
+        };
+        let all = [
+            GammaBase, GammaPerCellDistance, GammaPerRange, SigmaOutBase, SigmaOutPerCellDistance,
+            SigmaOutPerRange, SigmaIn, Behind, HalfAngle, UsableRange, NoEchoRange, NoEchoGamma,
+            Tempering,
+        ];
+        let mut parameters = ModelParameters::b21r();
+        for (value, parameter) in (1..).zip(all) {
+            parameter.set(&mut parameters, f64::from(value));
+        }
+        for (value, parameter) in (1..).zip(all) {
+            assert!((parameter.get(&parameters) - f64::from(value)).abs() < 1e-12, "{parameter:?}");
+        }
+    }
+
+    #[test]
+    fn impossible_axes_are_refused() {
+        let axis = |from, to| Axis { parameter: Parameter::SigmaIn, from, to };
+        assert!(Axis::check(&[axis(0.5, 0.1)]).is_err());
+        assert!(Axis::check(&[axis(f64::NAN, 0.1)]).is_err());
+        let twice = Axis::check(&[axis(0.1, 0.5), axis(0.1, 0.4)]);
+        assert_eq!(twice, Err(AxisError::Twice(Parameter::SigmaIn)));
+    }
+}

@@ -1,0 +1,182 @@
+//! The maximum of the likelihood, by local search from many starts.
+
+use crate::search::{SearchSettings, maximise};
+use crate::{Axis, AxisError, ClassScore, Example, ExampleScore, Parameter};
+use covmap_model::{ModelError, ModelParameters};
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// How the parameters are sought.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FitSettings {
+    /// The free parameters. All others stay as they are.
+    pub axes: Vec<Axis>,
+    /// How many local searches: the first from the given parameters, the others from places
+    /// drawn at random. The best result counts.
+    pub starts: usize,
+    /// Each search.
+    pub search: SearchSettings,
+}
+
+/// One evaluation of the objective.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Evaluation {
+    /// Which search it belongs to, from 0.
+    pub start: usize,
+    /// The values of the free parameters, in the order of the axes.
+    pub values: Vec<f64>,
+    /// Mean log-likelihood of a cell of the examples \[nats\]; `None` where the parameters
+    /// make no model.
+    pub log_likelihood: Option<f64>,
+}
+
+/// The likelihood along one axis through the fitted parameters.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Profile {
+    /// The parameter that varies.
+    pub parameter: Parameter,
+    /// Its values, and the mean log-likelihood at each \[nats\].
+    pub points: Vec<(f64, Option<f64>)>,
+}
+
+/// What a fit came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fitted {
+    /// The best parameters.
+    pub parameters: ModelParameters,
+    /// Their mean log-likelihood of a cell \[nats\].
+    pub log_likelihood: f64,
+    /// Every evaluation, in order.
+    pub path: Vec<Evaluation>,
+    /// One for each axis.
+    pub profiles: Vec<Profile>,
+}
+
+/// Why nothing can be fitted.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum FitError {
+    /// There is nothing to fit to.
+    #[error("there are no cells to fit to")]
+    NoCells,
+    /// An axis is impossible.
+    #[error(transparent)]
+    Axis(#[from] AxisError),
+    /// The given parameters, moved into the bounds, make no model.
+    #[error("the parameters to begin with, moved into the bounds of the axes, make no model: {0}")]
+    Begin(ModelError),
+}
+
+/// The points of a profile.
+const PROFILE_POINTS: u32 = 15;
+/// A start drawn at random makes no model more often than not: so many are tried.
+const DRAWS: usize = 1000;
+
+/// Fits the free parameters to examples: the largest mean log-likelihood of the true
+/// coverage of their cells under the maps that the model builds from their scans.
+///
+/// `uniform` draws uniform numbers in \[0, 1), for the starts; `report` sees every evaluation
+/// when it is made. The examples are evaluated in parallel; the result is a function of the
+/// arguments.
+///
+/// # Errors
+/// If there are no cells, an axis is impossible, or the parameters to begin with make no
+/// model within the bounds.
+pub fn fit(
+    examples: &[Example],
+    begin: &ModelParameters,
+    settings: &FitSettings,
+    mut uniform: impl FnMut() -> f64,
+    mut report: impl FnMut(&Evaluation),
+) -> Result<Fitted, FitError> {
+    let axes = &settings.axes;
+    Axis::check(axes)?;
+    if examples.iter().all(|example| example.truth.is_empty()) {
+        return Err(FitError::NoCells);
+    }
+    let parameters = |place: &[f64]| {
+        let mut parameters = begin.clone();
+        axes.iter().zip(place).for_each(|(axis, place)| axis.set(&mut parameters, *place));
+        parameters
+    };
+    let value = |place: &[f64]| Some(score(examples, &parameters(place)).ok()?.all.log_likelihood);
+    let given: Vec<f64> = axes.iter().map(|axis| axis.place(begin)).collect();
+    score(examples, &parameters(&given)).map_err(FitError::Begin)?;
+
+    let (mut path, mut best) = (Vec::new(), None);
+    for start in 0..settings.starts.max(1) {
+        let place = if start == 0 {
+            given.clone()
+        } else {
+            let mut draw = || axes.iter().map(|_| uniform()).collect::<Vec<f64>>();
+            let makes_a_model = |place: &Vec<f64>| {
+                examples.iter().all(|example| is_model(example, &parameters(place)))
+            };
+            (0..DRAWS).map(|_| draw()).find(makes_a_model).unwrap_or_else(|| given.clone())
+        };
+        let found = maximise(&place, &settings.search, value, |step| {
+            let values = axes.iter().zip(&step.place).map(|(axis, place)| axis.value(*place));
+            let evaluation =
+                Evaluation { start, values: values.collect(), log_likelihood: step.value };
+            report(&evaluation);
+            path.push(evaluation);
+        });
+        let higher = |found: &(Vec<f64>, f64), best: &Option<(Vec<f64>, f64)>| {
+            best.as_ref().is_none_or(|best| found.1 > best.1)
+        };
+        best = found.filter(|found| higher(found, &best)).or(best);
+    }
+    let (place, log_likelihood) = best.unwrap_or((given, f64::NEG_INFINITY));
+    let profiles = (0..axes.len()).map(|axis| profile(axis, axes, &place, &value)).collect();
+    Ok(Fitted { parameters: parameters(&place), log_likelihood, path, profiles })
+}
+
+/// How well the maps that a model builds explain all examples together, cell by cell.
+///
+/// # Errors
+/// If the parameters make no model.
+pub fn score(
+    examples: &[Example],
+    parameters: &ModelParameters,
+) -> Result<ExampleScore, ModelError> {
+    let scores: Vec<ExampleScore> =
+        examples.par_iter().map(|e| e.score(parameters)).collect::<Result<_, _>>()?;
+    let mean = |class: fn(&ExampleScore) -> ClassScore| {
+        let cells: usize = scores.iter().map(|s| class(s).cells).sum();
+        #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
+        let weighted = |f: fn(&ClassScore) -> f64| {
+            let sum: f64 = scores.iter().map(|s| f(&class(s)) * class(s).cells as f64).sum();
+            sum / cells.max(1) as f64
+        };
+        ClassScore {
+            cells,
+            log_likelihood: weighted(|c| c.log_likelihood),
+            crps: weighted(|c| c.crps),
+            error: weighted(|c| c.error),
+        }
+    };
+    Ok(ExampleScore {
+        all: mean(|s| s.all),
+        free: mean(|s| s.free),
+        partial: mean(|s| s.partial),
+        solid: mean(|s| s.solid),
+    })
+}
+
+fn is_model(example: &Example, parameters: &ModelParameters) -> bool {
+    let resolution = example.grid.resolution();
+    covmap_model::SensorModel::new(parameters, &example.ring, resolution).is_ok()
+}
+
+fn profile(
+    axis: usize,
+    axes: &[Axis],
+    place: &[f64],
+    value: &impl Fn(&[f64]) -> Option<f64>,
+) -> Profile {
+    let point = |i: u32| {
+        let mut place = place.to_vec();
+        place[axis] = f64::from(i) / f64::from(PROFILE_POINTS - 1);
+        (axes[axis].value(place[axis]), value(&place))
+    };
+    Profile { parameter: axes[axis].parameter, points: (0..PROFILE_POINTS).map(point).collect() }
+}
