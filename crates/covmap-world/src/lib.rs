@@ -30,6 +30,7 @@ mod raster_world;
 mod scenario;
 mod sight;
 mod sonar;
+pub mod survey;
 mod world;
 
 pub use drive::Drive;
