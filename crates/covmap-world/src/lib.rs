@@ -1,8 +1,8 @@
 //! The truth: simulated worlds, their echoes, driving, and the exact coverage of every cell.
 //!
-//! The stand-in for building and robot of Stachniss & Burgard (2003), section 5. The principal
-//! type is [`World`], made from a [`Scenario`] or a raster. This crate knows nothing of sensor
-//! models, beliefs and planners: no measurement is made by the model that explains it.
+//! The stand-in for building and robot of Stachniss & Burgard (2003), section 5: a [`World`],
+//! made from a [`Scenario`] or a raster; of a real place, a [`survey`](mod@survey) by laser.
+//! This crate knows nothing of sensor models: no measurement is made by what explains it.
 //!
 //! # Units
 //! Metres, radians counter-clockwise, seconds; coverage in [0, 1].

@@ -3,7 +3,7 @@
 use covmap::{Cell, Grid};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use covmap_world::survey::{
-    Post, Side, Survey, SurveyError, SurveyParameters, Surveyed, WallSegment, survey,
+    Evidence, Post, Side, Survey, SurveyError, SurveyParameters, Surveyed, WallSegment, survey,
 };
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World, WorldError, stream};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -308,5 +308,71 @@ proptest! {
             let many = echoes.iter().filter(|echo| distance(**echo, wall) < 0.06).count();
             prop_assert!(many >= parameters.min_views * parameters.min_echoes, "{:?}: {}", wall, many);
         }
+    }
+}
+
+/// A recorded log: frames of a laser in millimetres, with poses that were corrected by
+/// matching; `None` where it is not at hand.
+fn recorded(name: &str) -> Option<(SonarRing, Vec<Scan>)> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/sonar8");
+    let read = |file: String| std::fs::read_to_string(format!("{folder}/{file}")).ok();
+    let (frames, poses) =
+        (read(format!("{name}/laser.txt"))?, read(format!("{name}_poses_corrected.txt"))?);
+    let numbers = |line: &str| -> Vec<f64> {
+        line.split_whitespace().map(|number| number.parse().unwrap()).collect()
+    };
+    let beam = |i: i32| Beam {
+        pose: Isometry2::new(Vector2::new(0.12, 0.0), PI * (f64::from(i) / 360.0 - 0.5)),
+        half_angle: 0.0,
+        min_range: 0.3,
+        max_range: 81.0,
+    };
+    let ring = SonarRing::new((0..361).map(beam).collect()).unwrap();
+    let range = |mm: &f64| match *mm {
+        mm if mm >= 81_000.0 => Range::NoEcho,
+        mm if mm < 300.0 => Range::Missing,
+        mm => Range::Echo(mm / 1000.0),
+    };
+    let poses = poses.lines().filter(|line| !line.starts_with('#'));
+    let scan = |(frame, pose): (&str, &str)| {
+        let (frame, pose) = (numbers(frame), numbers(pose));
+        Scan {
+            pose: Isometry2::new(Vector2::new(pose[1], pose[2]), pose[3]),
+            time: pose[0] / 1000.0,
+            ranges: frame[1..].iter().map(range).collect(),
+        }
+    };
+    Some((ring, frames.lines().zip(poses).map(scan).collect()))
+}
+
+#[test]
+fn a_recorded_building_is_surveyed_and_its_robot_drove_through_no_wall() {
+    for name in ["test1", "test2"] {
+        let Some((ring, scans)) = recorded(name) else {
+            println!("the recorded log {name} is not at hand: nothing is tested");
+            continue;
+        };
+        let Surveyed { survey, support, .. } = surveyed(&ring, &scans);
+        assert!((30..100).contains(&survey.walls.len()), "{name}: {}", survey.walls.len());
+        let echoes: usize = support.iter().map(|s| s.echoes).sum();
+        let square: f64 = support.iter().map(|s| s.residual * s.residual * s.echoes as f64).sum();
+        let residual = (square / echoes as f64).sqrt();
+        assert!(residual < 0.012, "{name}: {residual}");
+        for scan in &scans {
+            let at = Point2::from(scan.pose.translation.vector);
+            let nearest =
+                survey.walls.iter().map(|w| distance(at, w)).fold(f64::INFINITY, f64::min);
+            assert!(nearest > 0.2, "{name}: {nearest} m at {at}");
+        }
+        let [low, high] = survey.bounds().unwrap().unwrap();
+        let grid = Grid::covering(low, high - low, 0.1, 2).unwrap();
+        let parameters = SurveyParameters::indoor();
+        let beams = scans.iter().map(|scan| (&ring, scan));
+        let evidence = survey.evidence(&grid, beams, &parameters).unwrap();
+        let sum = |f: fn(&Evidence) -> u32| {
+            evidence.values().iter().map(|e| f64::from(f(e))).sum::<f64>()
+        };
+        let (explained, unexplained) = (sum(|e| e.explained), sum(|e| e.unexplained));
+        assert!(unexplained < 0.12 * explained, "{name}: {unexplained} of {explained}");
     }
 }
