@@ -1,8 +1,7 @@
 //! The truth: simulated worlds, their echoes, driving, and the exact coverage of every cell.
 //!
 //! The stand-in for building and robot of Stachniss & Burgard (2003), section 5: a [`World`],
-//! made from a [`Scenario`] or a raster; of a real place, a [`survey`](mod@survey) by laser.
-//! This crate knows nothing of sensor models: no measurement is made by what explains it.
+//! or the [`survey`](mod@survey) of a real place. This crate knows nothing of sensor models.
 //!
 //! # Units
 //! Metres, radians counter-clockwise, seconds; coverage in [0, 1].

@@ -162,7 +162,8 @@ pub fn survey<'a>(
 
 /// A point to a tenth of a millimetre, so that files can be read.
 fn rounded(point: Point2<f64>) -> (f64, f64) {
-    let round = |v: f64| (v * 1e4).round() / 1e4;
+    // What rounds to −0 is 0.
+    let round = |v: f64| (v * 1e4).round() / 1e4 + 0.0;
     (round(point.x), round(point.y))
 }
 
