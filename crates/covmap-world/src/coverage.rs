@@ -4,6 +4,7 @@
 //! is full or a single cell. What is left of the outlines inside a cell is scaled to the
 //! unit square, where the area of the union is computed.
 
+use crate::geometry::Bounds;
 use crate::outline::{Outline, twice_area};
 use crate::world::World;
 use covmap::{Cell, Grid, Raster};
@@ -25,6 +26,22 @@ impl World {
     /// The exact coverage of every cell of a grid: the share of its area that lies inside an
     /// obstacle or outside of the extent, each place once. The error is below 1e-9.
     pub fn coverage(&self, grid: &Grid) -> Raster<f64> {
+        let (outlines, bounds, disjoint) = (&self.outlines, self.bounds(), self.disjoint);
+        Solids { outlines, bounds, disjoint }.coverage(grid)
+    }
+}
+
+/// What is solid: outlines, and everything outside of bounds, which may be infinite.
+pub(crate) struct Solids<'a> {
+    pub(crate) outlines: &'a [Outline],
+    pub(crate) bounds: Bounds,
+    /// Whether no two outlines overlap.
+    pub(crate) disjoint: bool,
+}
+
+impl Solids<'_> {
+    /// The exact coverage of every cell of a grid.
+    pub(crate) fn coverage(&self, grid: &Grid) -> Raster<f64> {
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_possible_wrap,
@@ -37,8 +54,8 @@ impl World {
             .into_par_iter()
             .map(|start| {
                 let cells = Cells { x: (0, width), y: (start, height.min(start + BAND)) };
-                let mut band = Band::new(self, grid, cells);
-                let ((low, high), (reach_low, reach_high)) = (band.range(cells), self.bounds());
+                let mut band = Band::new(self.bounds, grid, cells);
+                let ((low, high), (reach_low, reach_high)) = (band.range(cells), self.bounds);
                 let (low, high) = (low.sup(&reach_low), high.inf(&reach_high));
                 for (outline, (from, to)) in self.outlines.iter().zip(&boxes) {
                     if from.x < high.x && from.y < high.y && low.x < to.x && low.y < to.y {
@@ -61,7 +78,7 @@ struct Cells {
 }
 
 struct Band<'a> {
-    world: &'a World,
+    bounds: Bounds,
     grid: &'a Grid,
     cells: Cells,
     /// How many full ranges begin (or, negative, end) here: summed along x and y it says
@@ -72,9 +89,9 @@ struct Band<'a> {
 }
 
 impl<'a> Band<'a> {
-    fn new(world: &'a World, grid: &'a Grid, cells: Cells) -> Self {
+    fn new(bounds: Bounds, grid: &'a Grid, cells: Cells) -> Self {
         let count = (cells.x.1 - cells.x.0 + 1) * (cells.y.1 - cells.y.0 + 1);
-        Self { world, grid, cells, full: vec![0; usize_of(count)], pieces: Vec::new() }
+        Self { bounds, grid, cells, full: vec![0; usize_of(count)], pieces: Vec::new() }
     }
 
     /// The corners of a range of cells.
@@ -96,7 +113,7 @@ impl<'a> Band<'a> {
             return;
         }
         let (band_low, band_high) = self.range(cells);
-        let (world_low, world_high) = self.world.bounds();
+        let (world_low, world_high) = self.bounds;
         let (low, high) = (band_low.sup(&world_low), band_high.inf(&world_high));
         let mut polygon = outline.points.clone();
         for (axis, bound, keep_below) in
@@ -182,7 +199,7 @@ impl<'a> Band<'a> {
     /// The share of a cell that lies outside of the extent.
     fn outside(&self, cell: Cell) -> f64 {
         let (low, high) = self.range(Cells { x: (cell.x, cell.x + 1), y: (cell.y, cell.y + 1) });
-        let (from, to) = self.world.bounds();
+        let (from, to) = self.bounds;
         if from.x <= low.x && from.y <= low.y && high.x <= to.x && high.y <= to.y {
             return 0.0;
         }

@@ -1,8 +1,7 @@
 //! The truth: simulated worlds, their echoes, driving, and the exact coverage of every cell.
 //!
-//! The stand-in for building and robot of Stachniss & Burgard (2003), section 5. The principal
-//! type is [`World`], made from a [`Scenario`] or a raster. This crate knows nothing of sensor
-//! models, beliefs and planners: no measurement is made by the model that explains it.
+//! The stand-in for building and robot of Stachniss & Burgard (2003), section 5: a [`World`],
+//! or the [`survey`](mod@survey) of a real place. This crate knows nothing of sensor models.
 //!
 //! # Units
 //! Metres, radians counter-clockwise, seconds; coverage in [0, 1].
@@ -30,6 +29,7 @@ mod raster_world;
 mod scenario;
 mod sight;
 mod sonar;
+pub mod survey;
 mod world;
 
 pub use drive::Drive;

@@ -195,7 +195,7 @@ impl Eye<'_> {
         for &direction in self.fan.of(cell) {
             let hit = self.world.first_hit(origin, direction, self.range);
             let length = hit.map_or(self.range, |hit| hit.distance);
-            self.pass(origin, direction, length, &mut seen.in_sight);
+            cells_along(self.grid, origin, direction, length, |i| seen.in_sight[i] = true);
             let Some(hit) = hit else { continue };
             let at = origin + direction * hit.distance;
             let inward = -self.world.faces[hit.face].normal();
@@ -209,39 +209,39 @@ impl Eye<'_> {
             }
         }
     }
+}
 
-    /// Marks the cells along a ray.
-    fn pass(
-        &self,
-        origin: Point2<f64>,
-        direction: Vector2<f64>,
-        length: f64,
-        seen: &mut Raster<bool>,
-    ) {
-        let resolution = self.grid.resolution();
-        let mut cell = self.grid.unbounded_cell_at(origin);
-        let corner = self.grid.lower_corner(cell);
-        // Distance to the next line between columns and rows, and from line to line.
-        let next = |from: f64, low: f64, d: f64| match d {
-            d if d > 0.0 => (low + resolution - from) / d,
-            d if d < 0.0 => (low - from) / d,
-            _ => f64::INFINITY,
-        };
-        let mut along_x = next(origin.x, corner.x, direction.x);
-        let mut along_y = next(origin.y, corner.y, direction.y);
-        let (step_x, step_y) = ((resolution / direction.x).abs(), (resolution / direction.y).abs());
-        while let Some(i) = self.grid.index(cell) {
-            seen[i] = true;
-            if along_x.min(along_y) >= length - EQUAL {
-                break;
-            }
-            if along_x <= along_y {
-                along_x += step_x;
-                cell.x += if direction.x > 0.0 { 1 } else { -1 };
-            } else {
-                along_y += step_y;
-                cell.y += if direction.y > 0.0 { 1 } else { -1 };
-            }
+/// Visits the cells of a grid along a ray, as long as it stays in the grid.
+pub(crate) fn cells_along(
+    grid: &Grid,
+    origin: Point2<f64>,
+    direction: Vector2<f64>,
+    length: f64,
+    mut visit: impl FnMut(usize),
+) {
+    let resolution = grid.resolution();
+    let mut cell = grid.unbounded_cell_at(origin);
+    let corner = grid.lower_corner(cell);
+    // Distance to the next line between columns and rows, and from line to line.
+    let next = |from: f64, low: f64, d: f64| match d {
+        d if d > 0.0 => (low + resolution - from) / d,
+        d if d < 0.0 => (low - from) / d,
+        _ => f64::INFINITY,
+    };
+    let mut along_x = next(origin.x, corner.x, direction.x);
+    let mut along_y = next(origin.y, corner.y, direction.y);
+    let (step_x, step_y) = ((resolution / direction.x).abs(), (resolution / direction.y).abs());
+    while let Some(i) = grid.index(cell) {
+        visit(i);
+        if along_x.min(along_y) >= length - EQUAL {
+            break;
+        }
+        if along_x <= along_y {
+            along_x += step_x;
+            cell.x += if direction.x > 0.0 { 1 } else { -1 };
+        } else {
+            along_y += step_y;
+            cell.y += if direction.y > 0.0 { 1 } else { -1 };
         }
     }
 }

@@ -10,3 +10,4 @@ mod raster;
 mod scenarios;
 mod sight;
 mod sonar;
+mod survey;

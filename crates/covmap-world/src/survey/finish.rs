@@ -1,0 +1,102 @@
+//! The last touches: corners are closed, and no wall is thicker than what was seen behind it.
+
+use super::SurveyParameters;
+use super::line::Line;
+use super::view::View;
+use super::wall::{Wall, passed, pieces};
+use rayon::prelude::*;
+
+/// The thickness is found in so many steps.
+const STEPS: u32 = 5;
+/// No wall is thinner [m].
+const THINNEST: f64 = 0.02;
+/// Walls meet in a corner if they turn by more than this (the sine).
+const TURN: f64 = 0.3;
+/// Beams that went through behind a wall ended at least this far beyond [m].
+const CLEAR: f64 = 0.05;
+/// Walls look in opposite directions from this cosine on.
+const OPPOSITE: f64 = -0.9;
+/// A share of a wall's pieces, behind which beams went through, from which it is thinner.
+const SHARE: f64 = 0.1;
+
+/// Moves ends of walls that nearly meet to where they meet.
+pub(super) fn close_corners(walls: &mut [Wall], parameters: &SurveyParameters) {
+    let snapshot = walls.to_vec();
+    for (i, wall) in walls.iter_mut().enumerate() {
+        let mut best = [(parameters.corner, None), (parameters.corner, None)];
+        for (j, other) in snapshot.iter().enumerate() {
+            let sine = wall.line.along.perp(&other.line.along);
+            if i == j || sine.abs() < TURN {
+                continue;
+            }
+            let place = (other.line.at - wall.line.at).perp(&other.line.along) / sine;
+            let meeting = wall.line.point(place);
+            let near = |end: nalgebra::Point2<f64>| (end - meeting).norm();
+            let theirs = near(other.ends.0).min(near(other.ends.1));
+            let own = [snapshot[i].ends.0, snapshot[i].ends.1].map(near);
+            for (end, best) in own.iter().zip(&mut best) {
+                if theirs <= parameters.corner && *end < best.0 {
+                    *best = (*end, Some(meeting));
+                }
+            }
+        }
+        let (from, to) = (best[0].1.unwrap_or(wall.ends.0), best[1].1.unwrap_or(wall.ends.1));
+        if wall.line.place(to) - wall.line.place(from) > THINNEST {
+            wall.ends = (from, to);
+        }
+    }
+}
+
+/// How far the solid reaches behind each wall: what is assumed, or as far as the wall's other
+/// side or the free space behind it allows.
+pub(super) fn thicknesses(
+    views: &[View],
+    walls: &[Wall],
+    parameters: &SurveyParameters,
+) -> Vec<f64> {
+    let thickness = |wall: &Wall| {
+        let other = walls.iter().filter_map(|other| depth_of(wall, other));
+        let nearest = other.fold(parameters.thickness, f64::min);
+        free_depth(views, wall, nearest).max(THINNEST)
+    };
+    walls.par_iter().map(thickness).collect()
+}
+
+/// How far behind a wall another one is that is seen from the other side.
+fn depth_of(wall: &Wall, other: &Wall) -> Option<f64> {
+    let (from, to) = wall.line.span([wall.ends.0, wall.ends.1]);
+    let (low, high) = wall.line.span([other.ends.0, other.ends.1]);
+    let opposite = wall.line.along.dot(&other.line.along) < OPPOSITE;
+    let (low, high) = (low.max(from), high.min(to));
+    if !opposite || high - low < 0.5 * other.length().min(wall.length()) {
+        return None;
+    }
+    let depth = -wall.line.height(
+        other.line.at + other.line.along * other.line.place(wall.line.point(0.5 * (low + high))),
+    );
+    (depth > 0.0).then_some(depth)
+}
+
+/// The depth behind a wall up to which no beams went through.
+fn free_depth(views: &[View], wall: &Wall, thickness: f64) -> f64 {
+    let (from, to) = wall.line.span([wall.ends.0, wall.ends.1]);
+    // The ends may be off by a little.
+    let (start, length) = (from + CLEAR, to - from - 2.0 * CLEAR);
+    if length <= 0.0 {
+        return thickness;
+    }
+    let mut free = thickness;
+    for step in (1..=STEPS).rev() {
+        let depth = thickness * f64::from(step) / f64::from(STEPS);
+        let line = Line { at: wall.line.at + wall.line.back() * depth, along: wall.line.along };
+        let passed = passed(views, &line, start, pieces(length), CLEAR);
+        let open = passed.iter().filter(|&&count| count >= 2).count();
+        #[allow(clippy::cast_precision_loss, reason = "small counts")]
+        let share = open as f64 / passed.len() as f64;
+        if share < SHARE {
+            break;
+        }
+        free = thickness * (f64::from(step) - 1.0) / f64::from(STEPS);
+    }
+    free
+}

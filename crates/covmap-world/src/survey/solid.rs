@@ -1,0 +1,120 @@
+//! The solids that a survey stands for, and their exact coverage.
+
+use super::line::Line;
+use super::{Post, Side, Survey, WallSegment};
+use crate::coverage::Solids;
+use crate::error::WorldError;
+use crate::outline::{Outline, outlines};
+use crate::scenario::{Obstacle, Shape, Surface};
+use covmap::{Grid, Raster};
+use nalgebra::{Point2, Vector2};
+
+/// Ends of walls that are this near to each other are one corner [m].
+const SAME: f64 = 0.005;
+/// Walls that turn by less leave no gap behind their corner (the sine).
+const STRAIGHT: f64 = 0.1;
+/// The back of a corner lies at most so many thicknesses behind its front [1].
+const FAR: f64 = 3.0;
+
+impl WallSegment {
+    /// The line of the front, seen from its left, and its length; `None` without length.
+    pub(super) fn front(&self) -> Option<(Line, f64)> {
+        let [from, to] = [self.from, self.to].map(|(x, y)| Point2::new(x, y));
+        let (from, to) = if self.seen_from == Side::Left { (from, to) } else { (to, from) };
+        Some((Line::through(from, to)?, (to - from).norm()))
+    }
+
+    /// The solid behind the front.
+    fn shape(&self) -> Shape {
+        let thickness = self.thickness;
+        let Some((line, length)) = self.front() else {
+            return Shape::Wall { from: self.from, to: self.to, thickness };
+        };
+        let middle = line.back() * (0.5 * thickness);
+        let (from, to) = (line.at + middle, line.point(length) + middle);
+        Shape::Wall { from: (from.x, from.y), to: (to.x, to.y), thickness }
+    }
+}
+
+impl Survey {
+    /// The outlines of walls, posts and the others, in this order; then what is solid behind
+    /// the corners of rooms, between the walls that meet there.
+    pub(super) fn outlines(&self) -> Result<Vec<Outline>, WorldError> {
+        let walls = self.walls.iter().map(WallSegment::shape);
+        let posts = self.posts.iter();
+        let posts = posts.map(|&Post { center, radius }| Shape::Circle { center, radius });
+        let shapes = walls.chain(posts).chain(self.solids.iter().cloned());
+        let mut all = outlines(&obstacles(shapes))?;
+        all.extend(outlines(&obstacles(corners(&self.walls).into_iter()))?);
+        Ok(all)
+    }
+
+    /// The exact coverage of every cell of a grid: the share of its area that lies in a solid,
+    /// each place once.
+    ///
+    /// Solid is what lies behind a front, up to its thickness; where two walls meet in the
+    /// corner of a room, what lies between; and posts and other solids.
+    ///
+    /// # Errors
+    /// If a primitive has a number that is not finite, absurd or not positive, or a polygon is
+    /// not simple. Walls are counted first, then posts, then the other solids.
+    pub fn coverage(&self, grid: &Grid) -> Result<Raster<f64>, WorldError> {
+        let outlines = self.outlines()?;
+        let all = Vector2::repeat(f64::INFINITY);
+        let bounds = (Point2::from(-all), Point2::from(all));
+        Ok(Solids { outlines: &outlines, bounds, disjoint: false }.coverage(grid))
+    }
+
+    /// The corners of the smallest box around all solids \[m\]; `None` without solids.
+    ///
+    /// # Errors
+    /// As [`Survey::coverage`].
+    pub fn bounds(&self) -> Result<Option<[Point2<f64>; 2]>, WorldError> {
+        let outlines = self.outlines()?;
+        let all = outlines.iter().map(Outline::bounds);
+        let all = all.reduce(|(low, high), (from, to)| (low.inf(&from), high.sup(&to)));
+        Ok(all.map(|(low, high)| [low, high]))
+    }
+}
+
+fn obstacles(shapes: impl Iterator<Item = Shape>) -> Vec<Obstacle> {
+    shapes.map(|shape| Obstacle { shape, surface: Surface::Rough }).collect()
+}
+
+/// What lies behind the corners where one wall ends, the next begins, and the room between
+/// them is less than half a turn wide.
+fn corners(walls: &[WallSegment]) -> Vec<Shape> {
+    let fronts: Vec<(Line, f64, f64)> = walls
+        .iter()
+        .filter_map(|w| w.front().map(|(line, length)| (line, length, w.thickness)))
+        .collect();
+    let mut begins: Vec<usize> = (0..fronts.len()).collect();
+    begins.sort_by(|&i, &j| fronts[i].0.at.x.total_cmp(&fronts[j].0.at.x));
+    let mut found = Vec::new();
+    for (line, length, thickness) in &fronts {
+        let end = line.point(*length);
+        let first = begins.partition_point(|&i| fronts[i].0.at.x < end.x - SAME);
+        for &i in begins[first..].iter().take_while(|&&i| fronts[i].0.at.x <= end.x + SAME) {
+            let (next, _, depth) = &fronts[i];
+            if (next.at - end).norm() <= SAME {
+                found.extend(corner(end, (line, *thickness), (next, *depth)));
+            }
+        }
+    }
+    found
+}
+
+fn corner(at: Point2<f64>, before: (&Line, f64), after: (&Line, f64)) -> Option<Shape> {
+    let (a, b) = (before.0.back(), after.0.back());
+    let sine = a.perp(&b);
+    if sine < STRAIGHT {
+        return None;
+    }
+    // Where the backs of both walls meet: a · v and b · v are the thicknesses.
+    let v = Vector2::new(before.1 * b.y - after.1 * a.y, after.1 * a.x - before.1 * b.x) / sine;
+    let mut points = vec![at, at + a * before.1, at + v, at + b * after.1];
+    if v.norm() > FAR * before.1.max(after.1) || v.perp(&a) > 0.0 || b.perp(&v) > 0.0 {
+        points.remove(2);
+    }
+    Some(Shape::Polygon(points.iter().map(|p| (p.x, p.y)).collect()))
+}
