@@ -60,6 +60,21 @@ Example:
   cargo xtask model --range 1.0 --out model.csv
 ";
 
+const FIT_EXAMPLES: &str = "\
+FIT.ron names a configuration, examples to fit to, examples held out, and the free parameters
+with their bounds; see configs/fit/*.ron. The robot explores each example's world with the given
+configuration; what it measured, and the exact coverage of the cells that were in sight, is the
+example. The search maximises the mean log-likelihood of these coverages.
+
+The folder that is written:
+  config.ron     the fitted configuration, for `explore --config`
+  fit.json       every evaluation, the profiles, and the scores before and after
+  search.svg, search.png, profiles.svg, profiles.png
+
+Example:
+  cargo xtask fit configs/fit/b21r.ron --out out/fit
+";
+
 /// Explores unknown environments with coverage maps (Stachniss & Burgard, 2003).
 ///
 /// A simulated robot with a ring of sonars explores a world until a certificate says of every
@@ -85,6 +100,9 @@ pub(crate) enum Command {
     /// Writes what the sensor model makes of one echo: the numbers of Fig. 3.
     #[command(after_help = MODEL_EXAMPLES)]
     Model(Model),
+    /// Fits the sensor model to the truth by local search, and writes a configuration.
+    #[command(after_help = FIT_EXAMPLES)]
+    Fit(Fit),
 }
 
 #[derive(Debug, Args)]
@@ -155,6 +173,19 @@ pub(crate) struct Model {
     /// The table that is written
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Fit {
+    /// What is fitted to what (.ron)
+    #[arg(value_name = "FIT.ron")]
+    pub(crate) file: PathBuf,
+    /// Where the results go
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {

@@ -9,6 +9,8 @@ mod csv_file;
 mod explain;
 mod explain_picture;
 mod explore;
+mod fit;
+mod fit_file;
 mod input;
 mod interrupt;
 mod model;
@@ -33,6 +35,7 @@ fn main() -> ExitCode {
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Truth(arguments) => truth::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
+        Command::Fit(arguments) => fit::run(&arguments),
     };
     done.unwrap_or_else(|error| {
         say::error(&error);

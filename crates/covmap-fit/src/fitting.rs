@@ -5,6 +5,7 @@ use crate::{Axis, AxisError, ClassScore, Example, ExampleScore, Parameter};
 use covmap_model::{ModelError, ModelParameters};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::ops::ControlFlow;
 
 /// How the parameters are sought.
 #[derive(Debug, Clone, PartialEq)]
@@ -75,7 +76,8 @@ const DRAWS: usize = 1000;
 /// coverage of their cells under the maps that the model builds from their scans.
 ///
 /// `uniform` draws uniform numbers in \[0, 1), for the starts; `report` sees every evaluation
-/// when it is made. The examples are evaluated in parallel; the result is a function of the
+/// when it is made, and may end the search: the best so far is then the result, and there are
+/// no profiles. The examples are evaluated in parallel; the result is a function of the
 /// arguments.
 ///
 /// # Errors
@@ -86,7 +88,7 @@ pub fn fit(
     begin: &ModelParameters,
     settings: &FitSettings,
     mut uniform: impl FnMut() -> f64,
-    mut report: impl FnMut(&Evaluation),
+    mut report: impl FnMut(&Evaluation) -> ControlFlow<()>,
 ) -> Result<Fitted, FitError> {
     let axes = &settings.axes;
     Axis::check(axes)?;
@@ -103,7 +105,11 @@ pub fn fit(
     score(examples, &parameters(&given)).map_err(FitError::Begin)?;
 
     let (mut path, mut best) = (Vec::new(), None);
+    let mut stopped = false;
     for start in 0..settings.starts.max(1) {
+        if stopped {
+            break;
+        }
         let place = if start == 0 {
             given.clone()
         } else {
@@ -117,8 +123,10 @@ pub fn fit(
             let values = axes.iter().zip(&step.place).map(|(axis, place)| axis.value(*place));
             let evaluation =
                 Evaluation { start, values: values.collect(), log_likelihood: step.value };
-            report(&evaluation);
+            let next = report(&evaluation);
+            stopped = next.is_break();
             path.push(evaluation);
+            next
         });
         let higher = |found: &(Vec<f64>, f64), best: &Option<(Vec<f64>, f64)>| {
             best.as_ref().is_none_or(|best| found.1 > best.1)
@@ -126,7 +134,8 @@ pub fn fit(
         best = found.filter(|found| higher(found, &best)).or(best);
     }
     let (place, log_likelihood) = best.unwrap_or((given, f64::NEG_INFINITY));
-    let profiles = (0..axes.len()).map(|axis| profile(axis, axes, &place, &value)).collect();
+    let profiled = if stopped { 0 } else { axes.len() };
+    let profiles = (0..profiled).map(|axis| profile(axis, axes, &place, &value)).collect();
     Ok(Fitted { parameters: parameters(&place), log_likelihood, path, profiles })
 }
 

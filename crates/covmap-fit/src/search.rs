@@ -1,5 +1,7 @@
 //! Local search over the unit cube.
 
+use std::ops::ControlFlow;
+
 /// When the search ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
@@ -37,18 +39,20 @@ pub struct Step {
 /// parameters such as the distance behind act in steps, cell by cell: that is why it stands
 /// here instead of a simplex or a quasi-Newton method.
 ///
-/// Every evaluation is reported to `report`.
+/// Every evaluation is reported to `report`, which may end the search.
 pub fn maximise(
     start: &[f64],
     settings: &SearchSettings,
     mut value: impl FnMut(&[f64]) -> Option<f64>,
-    mut report: impl FnMut(Step),
+    mut report: impl FnMut(Step) -> ControlFlow<()>,
 ) -> Option<(Vec<f64>, f64)> {
     let mut left = settings.evaluations;
     let mut evaluate = |place: &[f64], left: &mut usize| {
         *left = left.saturating_sub(1);
         let value = value(place).filter(|v| v.is_finite());
-        report(Step { place: place.to_vec(), value });
+        if report(Step { place: place.to_vec(), value }).is_break() {
+            *left = 0;
+        }
         value
     };
     let mut best = start.to_vec();
@@ -85,6 +89,10 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
+    fn go_on(_: Step) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
     proptest! {
         #[test]
         fn the_top_of_a_hill_is_found(a in 0.0..1.0f64, b in 0.0..1.0f64, start in 0.0..1.0f64) {
@@ -93,7 +101,7 @@ mod tests {
                 Some(-(x * x + 3.0 * y * y + x * y))
             };
             let settings = SearchSettings { last_step: 1e-4, ..SearchSettings::default() };
-            let (place, _) = maximise(&[start, 0.5], &settings, hill, |_| ()).unwrap();
+            let (place, _) = maximise(&[start, 0.5], &settings, hill, go_on).unwrap();
             prop_assert!((place[0] - a).abs() < 2e-3 && (place[1] - b).abs() < 2e-3);
         }
 
@@ -101,7 +109,7 @@ mod tests {
         fn it_never_goes_where_it_may_not(edge in 0.3..0.9f64) {
             let value = |p: &[f64]| (p[0] <= edge).then_some(p[0]);
             let settings = SearchSettings { last_step: 1e-4, ..SearchSettings::default() };
-            let (place, _) = maximise(&[0.1], &settings, value, |_| ()).unwrap();
+            let (place, _) = maximise(&[0.1], &settings, value, go_on).unwrap();
             prop_assert!(place[0] <= edge && place[0] > edge - 1e-3);
         }
     }
@@ -110,8 +118,12 @@ mod tests {
     fn the_budget_is_kept_and_a_forbidden_start_is_said() {
         let mut asked = 0;
         let settings = SearchSettings { evaluations: 7, ..SearchSettings::default() };
-        maximise(&[0.5; 5], &settings, |p| Some(p[0]), |_| asked += 1);
+        let count = |_| {
+            asked += 1;
+            ControlFlow::Continue(())
+        };
+        maximise(&[0.5; 5], &settings, |p| Some(p[0]), count);
         assert_eq!(asked, 7);
-        assert_eq!(maximise(&[0.5], &settings, |_| None, |_| ()), None);
+        assert_eq!(maximise(&[0.5], &settings, |_| None, go_on), None);
     }
 }

@@ -8,8 +8,7 @@
 //!
 //! ```
 //! use covmap_world::{Scenario, SonarPhysics, Surface, World, stream};
-//! let scenario: Scenario = ron::from_str("(
-//!     name: \"pillar\", extent: (width: 5.0, height: 4.0),
+//! let scenario: Scenario = ron::from_str("(name: \"pillar\", extent: (width: 5.0, height: 4.0),
 //!     obstacles: [(shape: Circle(center: (3.0, 2.0), radius: 0.4), surface: Smooth)],
 //! )")?;
 //! let world = World::from_scenario(&scenario, Surface::Rough)?;
@@ -24,6 +23,7 @@ mod coverage;
 mod drive;
 mod error;
 mod geometry;
+mod moved;
 mod outline;
 mod raster_world;
 mod scenario;
@@ -36,5 +36,5 @@ pub use drive::Drive;
 pub use error::{MAX_EXTENT, MAX_OBSTACLES, MIN_LENGTH, WorldError};
 pub use scenario::{Extent, Obstacle, Scenario, Shape, Start, Surface};
 pub use sight::Seen;
-pub use sonar::{Blanking, PhysicsError, SonarPhysics, stream};
+pub use sonar::{Blanking, PhysicsError, SonarPhysics, stream, uniform};
 pub use world::World;

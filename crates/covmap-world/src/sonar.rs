@@ -6,4 +6,4 @@ mod physics;
 mod random;
 
 pub use physics::{Blanking, PhysicsError, SonarPhysics};
-pub use random::stream;
+pub use random::{stream, uniform};

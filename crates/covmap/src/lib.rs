@@ -3,8 +3,7 @@
 //! Section 2 of Stachniss & Burgard (2003), equation (11). The principal type is
 //! [`CoverageMap`]: a [`Grid`] of cells with a posterior over the coverage of each.
 //!
-//! This crate knows nothing of sensors, of sensor models and of robots: it stores
-//! posteriors, multiplies evidence into them, and measures how uncertain they are.
+//! This crate knows nothing of sensors, models and robots: it multiplies evidence.
 //!
 //! # Units
 //! Metres, nats; coverage in [0, 1], 0 for an empty cell and 1 for a full one.

@@ -1,0 +1,207 @@
+//! `fit`: the sensor model is fitted to the truth.
+
+use crate::arguments::Fit;
+use crate::fit_file::{FitFile, Source};
+use crate::interrupt::{self, Interrupt};
+use crate::{input, say};
+use anyhow::{Result, bail};
+use covmap_explore::Config;
+use covmap_fit::{
+    Evaluation, Example, ExampleScore, FitSettings, Fitted, Profile, SearchSettings, fit, score,
+};
+use covmap_io::{OutputFolder, write_json, write_ron};
+use covmap_model::ModelParameters;
+use covmap_world::{stream, uniform};
+use indicatif::{ProgressBar, ProgressDrawTarget};
+use rayon::prelude::*;
+use serde::Serialize;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::io::IsTerminal;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// All that `fit.json` holds.
+#[derive(Serialize)]
+struct Report<'a> {
+    file: &'a Path,
+    seed: u64,
+    training: Compared,
+    held_out: Vec<Compared>,
+    /// Difference of the mean log-likelihood per held-out example, after − before.
+    held_out_difference: Option<Paired>,
+    before: &'a ModelParameters,
+    after: &'a ModelParameters,
+    path: &'a [Evaluation],
+    profiles: &'a [Profile],
+}
+
+/// One example, or all together, before and after.
+#[derive(Serialize)]
+struct Compared {
+    name: String,
+    before: ExampleScore,
+    after: ExampleScore,
+}
+
+/// A mean of paired differences with its 95 % interval by Student's t.
+#[derive(Serialize)]
+struct Paired {
+    n: usize,
+    mean: f64,
+    low: f64,
+    high: f64,
+}
+
+pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
+    let interrupt = Interrupt::listen()?;
+    let (file, config, name) = FitFile::read(&arguments.file)?;
+    let folder = OutputFolder::create(arguments.out.clone())?;
+    let line = progress(arguments.quiet);
+    let examples = |sources: &[Source]| simulate(sources, arguments, (&config, &name), &line, &interrupt);
+    let (training, held_out) = (examples(&file.training)?, examples(&file.held_out)?);
+    if interrupt.is_pressed() {
+        return Ok(ExitCode::from(interrupt::EXIT_CODE));
+    }
+    let fitted = search(&file, &config, &training, &line, &interrupt)?;
+    line.finish_and_clear();
+
+    let compare = |name: &str, examples: &[Example]| -> Result<Compared> {
+        let before = score(examples, &config.model)?;
+        let after = score(examples, &fitted.parameters)?;
+        Ok(Compared { name: name.to_owned(), before, after })
+    };
+    let each = |example: &Example| compare(&example.name, std::slice::from_ref(example));
+    let held_out: Vec<Compared> = held_out.iter().map(each).collect::<Result<_>>()?;
+    let report = Report {
+        file: &arguments.file,
+        seed: file.seed,
+        training: compare("training", &training)?,
+        held_out_difference: paired(&held_out),
+        held_out,
+        before: &config.model,
+        after: &fitted.parameters,
+        path: &fitted.path,
+        profiles: &fitted.profiles,
+    };
+    write(&folder, &config, &report)?;
+    let written = folder.finish()?;
+    if !arguments.quiet {
+        tell(&report, &written);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn progress(quiet: bool) -> ProgressBar {
+    let watched = !quiet && std::io::stderr().is_terminal();
+    let target =
+        if watched { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+    ProgressBar::with_draw_target(None, target).with_style(indicatif::ProgressStyle::default_spinner())
+}
+
+/// Explores the worlds of some examples, side by side.
+fn simulate(
+    sources: &[Source],
+    arguments: &Fit,
+    config: (&Config, &PathBuf),
+    line: &ProgressBar,
+    interrupt: &Interrupt,
+) -> Result<Vec<Example>> {
+    let example = |source: &Source| {
+        source.example(&arguments.file, (config.0, config.1), &mut || {
+            line.set_message(format!("exploring {}", source.scenario.display()));
+            line.tick();
+            if interrupt.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })
+    };
+    sources.par_iter().map(example).collect()
+}
+
+fn search(
+    file: &FitFile,
+    config: &Config,
+    training: &[Example],
+    line: &ProgressBar,
+    interrupt: &Interrupt,
+) -> Result<Fitted> {
+    let settings = FitSettings {
+        axes: file.axes.clone(),
+        starts: file.starts,
+        search: SearchSettings { evaluations: file.evaluations, ..SearchSettings::default() },
+    };
+    let mut random = stream(file.seed, "fit", 0);
+    let (mut count, mut best) = (0, f64::NEG_INFINITY);
+    let fitted = fit(training, &config.model, &settings, || uniform(&mut random), |evaluation| {
+        count += 1;
+        best = evaluation.log_likelihood.unwrap_or(best).max(best);
+        line.set_message(format!(
+            "search {} of {} · {count} evaluations · log-likelihood {best:.4} nats a cell",
+            evaluation.start + 1,
+            file.starts
+        ));
+        line.tick();
+        if interrupt.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    });
+    match fitted {
+        Ok(fitted) => Ok(fitted),
+        Err(error) => bail!("the fit cannot begin: {error}"),
+    }
+}
+
+/// The paired differences of the held-out examples; `None` for fewer than two.
+fn paired(compared: &[Compared]) -> Option<Paired> {
+    let differences: Vec<f64> =
+        compared.iter().map(|c| c.after.all.log_likelihood - c.before.all.log_likelihood).collect();
+    let n = differences.len();
+    let count = f64::from(u32::try_from(n).ok()?);
+    let mean = differences.iter().sum::<f64>() / count;
+    let variance = differences.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (count - 1.0);
+    let t = StudentsT::new(0.0, 1.0, count - 1.0).ok()?.inverse_cdf(0.975);
+    let half = t * (variance / count).sqrt();
+    (n >= 2).then_some(Paired { n, mean, low: mean - half, high: mean + half })
+}
+
+fn write(folder: &OutputFolder, config: &Config, report: &Report<'_>) -> Result<()> {
+    let fitted = Config { model: report.after.clone(), ..config.clone() };
+    input::check(&fitted, Path::new("the fitted configuration"))?;
+    let comment = format!(
+        "Fitted by `cargo xtask fit {}`, seed {}.\n\
+         Mean log-likelihood of the true coverage of a cell [nats], before → after:\n\
+         training {:.4} → {:.4} ({} cells){}",
+        report.file.display(),
+        report.seed,
+        report.training.before.all.log_likelihood,
+        report.training.after.all.log_likelihood,
+        report.training.after.all.cells,
+        report.held_out_difference.as_ref().map_or_else(String::new, |d| format!(
+            "\nheld out, difference: {:+.4}, 95 % interval [{:+.4}, {:+.4}] of {} examples",
+            d.mean, d.low, d.high, d.n
+        )),
+    );
+    write_ron(folder.path("config.ron"), &fitted, Some(&comment))?;
+    write_json(folder.path("fit.json"), report)?;
+    Ok(())
+}
+
+fn tell(report: &Report<'_>, written: &Path) {
+    let row = |compared: &Compared| {
+        let (before, after) = (&compared.before, &compared.after);
+        say::line(format!(
+            "  {:32} {:8.4} → {:8.4}   partial {:8.4} → {:8.4}   error {:.4} → {:.4}",
+            compared.name,
+            before.all.log_likelihood,
+            after.all.log_likelihood,
+            before.partial.log_likelihood,
+            after.partial.log_likelihood,
+            before.all.error,
+            after.all.error
+        ));
+    };
+    say::line("mean log-likelihood of a cell [nats], before → after:");
+    row(&report.training);
+    report.held_out.iter().for_each(row);
+    if let Some(Paired { n, mean, low, high }) = report.held_out_difference {
+        say::line(format!("  held out: {mean:+.4} [{low:+.4}, {high:+.4}], {n} examples"));
+    }
+    say::line(format!("  {} evaluations; {}", report.path.len(), written.display()));
+}

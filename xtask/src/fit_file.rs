@@ -1,0 +1,130 @@
+//! The file that says what is fitted to what, and the examples that it describes.
+
+use crate::input::{self, about};
+use anyhow::{Result, bail};
+use covmap_explore::{Config, Limits, Mission, SimulatedRobot, Truth, explore};
+use covmap_fit::{Axis, Example};
+use covmap_io::read_ron;
+use covmap_plan::Strategy;
+use covmap_sonar::SonarRing;
+use covmap_world::{Scenario, World};
+use nalgebra::Vector2;
+use serde::Deserialize;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// Not more scans than this in one example, so that they fit into the memory.
+const MOST_SCANS: usize = 1_000_000;
+
+/// What is fitted to what. Files are named relative to this one.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct FitFile {
+    /// Robot, sonar, the model to begin with, and the planner.
+    pub(crate) config: PathBuf,
+    /// The side of a cell \[m\].
+    pub(crate) resolution: f64,
+    /// Seed of the starts.
+    pub(crate) seed: u64,
+    /// How many local searches.
+    pub(crate) starts: usize,
+    /// The most evaluations of each.
+    pub(crate) evaluations: usize,
+    /// The free parameters.
+    pub(crate) axes: Vec<Axis>,
+    /// What is fitted to.
+    pub(crate) training: Vec<Source>,
+    /// What the result is checked on.
+    pub(crate) held_out: Vec<Source>,
+}
+
+/// Where an example comes from: a simulated exploration.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Source {
+    /// The scenario.
+    pub(crate) scenario: PathBuf,
+    /// By how much it is turned \[rad\].
+    pub(crate) turn: f64,
+    /// By how much it is shifted \[m\].
+    pub(crate) shift: (f64, f64),
+    /// Who explores it.
+    pub(crate) strategy: Strategy,
+    /// How many scans.
+    pub(crate) scans: usize,
+    /// Seed of the noise.
+    pub(crate) seed: u64,
+}
+
+impl FitFile {
+    /// Reads and checks the file, and the configuration that it names.
+    pub(crate) fn read(path: &Path) -> Result<(Self, Config, PathBuf)> {
+        let file: Self = read_ron(path)?;
+        let name = beside(path, &file.config);
+        let (mut config, _) = input::config(Some(&name))?;
+        config.resolution = file.resolution;
+        input::check(&config, &name)?;
+        Axis::check(&file.axes).map_err(about(path))?;
+        if file.axes.is_empty() || file.training.is_empty() {
+            bail!("{}: axes and training need at least one entry each", path.display());
+        }
+        if !(1..=1000).contains(&file.starts) || !(1..=1_000_000).contains(&file.evaluations) {
+            bail!("{}: starts must lie in 1..=1000, evaluations in 1..=1000000", path.display());
+        }
+        Ok((file, config, name))
+    }
+}
+
+/// A file that is named in another one.
+pub(crate) fn beside(path: &Path, named: &Path) -> PathBuf {
+    path.parent().unwrap_or(Path::new("")).join(named)
+}
+
+impl Source {
+    /// Lets the robot explore, and takes what it measured with the truth.
+    pub(crate) fn example(
+        &self,
+        path: &Path,
+        (config, name): (&Config, &Path),
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Example> {
+        if !(1..=MOST_SCANS).contains(&self.scans) {
+            bail!("{}: scans: {} must lie in 1..={MOST_SCANS}", path.display(), self.scans);
+        }
+        let file = beside(path, &self.scenario);
+        let moves = [self.turn, self.shift.0, self.shift.1];
+        if !moves.iter().all(|v| v.is_finite()) || self.shift.0 < 0.0 || self.shift.1 < 0.0 {
+            bail!("{}: turn and shift must be finite, the shift not negative", path.display());
+        }
+        let scenario: Scenario = read_ron(&file)?;
+        // What is wrong with the scenario is said in its own coordinates.
+        World::from_scenario(&scenario, config.sonar.surface).map_err(about(&file))?;
+        let shift = Vector2::new(self.shift.0, self.shift.1);
+        let moved = if self.turn == 0.0 && shift == Vector2::zeros() {
+            scenario
+        } else {
+            scenario.moved(self.turn, shift)
+        };
+        let world = World::from_scenario(&moved, config.sonar.surface).map_err(about(&file))?;
+        let mut config = config.clone();
+        config.planner.strategy = self.strategy;
+        let limits = Limits { max_scans: Some(self.scans), ..Limits::default() };
+        let mission = input::mission((&world, &file), (&config, name), None, limits)?;
+        let mut robot = SimulatedRobot::new(&world, &config, self.seed)?;
+        let run = explore(&mission, &mut robot, &mut |_, _| watch())?;
+        let truth = Truth::new(&world, &mission);
+        let scored = truth.scored_cells(&world, &mission, &run);
+        let coverage = |cell| truth.coverage.get(cell).copied().unwrap_or(1.0);
+        Ok(Example {
+            name: format!("{}, {}, seed {}", moved.name, self.strategy, self.seed),
+            ring: ring(&mission)?,
+            scans: run.scans,
+            grid: mission.grid,
+            truth: scored.into_iter().map(|cell| (cell, coverage(cell))).collect(),
+        })
+    }
+}
+
+fn ring(mission: &Mission) -> Result<SonarRing> {
+    Ok(SonarRing::from_specification(&mission.config.robot.ring)?)
+}
