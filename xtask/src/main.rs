@@ -11,6 +11,10 @@ mod explain_picture;
 mod explore;
 mod input;
 mod interrupt;
+mod log;
+mod map;
+mod map_pictures;
+mod mapper;
 mod model;
 mod pictures;
 mod progress;
@@ -18,6 +22,7 @@ mod replay;
 mod results;
 mod say;
 mod trace_file;
+mod trail;
 mod truth;
 
 use arguments::{Arguments, Command};
@@ -31,6 +36,8 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Explore(arguments) => explore::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Map(arguments) => map::run(&arguments),
+        Command::Log(arguments) => log::run(&arguments),
         Command::Truth(arguments) => truth::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
     };
