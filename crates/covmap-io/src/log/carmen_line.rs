@@ -108,7 +108,8 @@ fn expect_words(fields: &Fields<'_>, count: usize, words: usize) -> Result<(), D
     if there == words.saturating_add(3) || without {
         return Ok(());
     }
-    Err(if there < words { too_few(fields, count) } else { wrong_count(count) })
+    let more = there > words.saturating_add(3);
+    Err(if more { wrong_count(count) } else { too_few(fields, count) })
 }
 
 /// A line that has its end, but not all of its ranges, was not cut short.

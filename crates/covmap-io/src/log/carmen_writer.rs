@@ -50,7 +50,7 @@ pub enum CarmenWriterError {
 /// same time.
 ///
 /// A [`LogReader`](super::LogReader) makes the same scans of it: ranges, times and positions to
-/// the last bit, headings within 10⁻¹⁵ rad of rounding. `NoEcho` is written as the longest range,
+/// the last bit, headings up to rounding (10⁻¹⁵ rad). `NoEcho` is written as the longest range,
 /// `Missing` as 0. The format has no place for the shortest and longest ranges; they are in
 /// `PARAM covmap_sonar_min_range` and `PARAM covmap_sonar_max_range` \[m\].
 #[derive(Debug)]
