@@ -70,6 +70,9 @@ Examples:
   cargo xtask map corridor.log.gz
   cargo xtask map sonar8/test1 --poses sonar8/test1_poses_corrected.txt
   cargo xtask map sonar8/test1 --sensor laser --resolution 0.05 --out out/laser
+
+Exit codes: 0 done; 2 bad input, or a folder that cannot be written. Ctrl-C ends it at once, and
+leaves DIR.partial.
 ";
 
 const LOG_EXAMPLES: &str = "\
@@ -116,7 +119,7 @@ pub(crate) enum Command {
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(Explain),
     /// Makes the map of what a real robot recorded.
-    #[command(after_help = format!("{MAP_EXAMPLES}\n{EXIT_CODES}"))]
+    #[command(after_help = MAP_EXAMPLES)]
     Map(Map),
     /// Writes the scans of a run as a log of CARMEN.
     #[command(after_help = LOG_EXAMPLES)]
