@@ -81,11 +81,12 @@ fn the_world_never_evaluates_the_sensor_model() {
 
 #[test]
 fn what_is_foreign_has_one_home() {
-    let homes: [(&str, &[&str]); 7] = [
+    let homes: [(&str, &[&str]); 8] = [
         ("parry2d", &["covmap-world"]),
         ("ron", &["covmap-io"]),
         ("serde-saphyr", &["covmap-io"]),
         ("png", &["covmap-io"]),
+        ("flate2", &["covmap-io"]),
         ("clap", &[]),
         ("indicatif", &[]),
         ("ctrlc", &[]),

@@ -1,6 +1,6 @@
 //! What can be typed.
 
-use clap::{Args, Parser, Subcommand};
+use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_plan::Strategy;
 use nalgebra::{Isometry2, Vector2};
 use std::num::NonZeroUsize;
@@ -42,6 +42,45 @@ candidates, the five best, and the way to the one that was chosen.
 
 Example:
   cargo xtask explain out/office-IG_CL-0.3-1 --step 12
+";
+
+const MAP_EXAMPLES: &str = "\
+LOG is one of
+  a text log of CARMEN, plain or packed with gzip: PARAM, ODOM, SONAR, FLASER, ROBOTLASER1
+  a folder with od.txt (t x y theta: ms, mm, mm, 1/10 degree), sonar.txt (t s0 s1 ...: ms,
+  mm) and laser.txt (t r0 ... r360: ms, mm, from -90 degrees in steps of 1/2)
+The geometry of the sensors is the log's, where it has one; the configuration's ring is taken
+for sonar.txt, and for what SONAR does not say, the shortest and longest range. A laser is a
+ring of lines. Where the sensors do not look straight out from the robot's centre, sectors
+become cones.
+
+Frames that are damaged are skipped and counted; the last lines of the report say how many and
+why. The poses are taken as they are: odometry drifts, --poses corrects it. Where they jump by
+more than 1 m, nothing is known of the way.
+
+The folder that is written, as by `explore`:
+  summary.json              the numbers of the map
+  belief.bin                the whole posterior of every cell
+  map.pgm, map.yaml         the map for ROS map_server
+  coverage.png              the most likely coverage, with the path
+  entropy.png               what is left uncertain
+  occupancy.png             the log-odds occupancy grid of the same scans
+
+Examples:
+  cargo xtask map corridor.log.gz
+  cargo xtask map sonar8/test1 --poses sonar8/test1_poses_corrected.txt
+  cargo xtask map sonar8/test1 --sensor laser --resolution 0.05 --out out/laser
+
+Exit codes: 0 done; 2 bad input, or a folder that cannot be written. Ctrl-C ends it at once, and
+leaves DIR.partial.
+";
+
+const LOG_EXAMPLES: &str = "\
+Each scan of the trace becomes a line ODOM and a line SONAR of the same time; no echo is the
+longest range, a missing reading 0. Read back, the log gives the same scans.
+
+Example:
+  cargo xtask log out/lab-IG_CL-0.3-1 --out lab.log
 ";
 
 const TRUTH_EXAMPLES: &str = "\
@@ -94,6 +133,12 @@ pub(crate) enum Command {
     /// Says and draws why a decision of a run was taken.
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(Explain),
+    /// Makes the map of what a real robot recorded.
+    #[command(after_help = MAP_EXAMPLES)]
+    Map(Map),
+    /// Writes the scans of a run as a log of CARMEN.
+    #[command(after_help = LOG_EXAMPLES)]
+    Log(Log),
     /// Writes the exact coverage of every cell of a world.
     #[command(after_help = TRUTH_EXAMPLES)]
     Truth(Truth),
@@ -150,6 +195,54 @@ pub(crate) struct Explain {
     pub(crate) step: usize,
 }
 
+/// Which sensors of a log are read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SensorName {
+    Sonar,
+    Laser,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Map {
+    /// A CARMEN log, or a folder with od.txt, sonar.txt and laser.txt
+    pub(crate) log: PathBuf,
+    /// Resolution, robot and sensor model [default: configs/sonar8.ron for a folder,
+    /// configs/b21r.ron for a CARMEN log; both are built in]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) config: Option<PathBuf>,
+    /// Poses instead of the log's: lines `t_ms x_m y_m theta_rad` in the order of time
+    #[arg(long, value_name = "FILE")]
+    pub(crate) poses: Option<PathBuf>,
+    /// Which sensors make the map
+    #[arg(long, value_enum, default_value = "sonar")]
+    pub(crate) sensor: SensorName,
+    /// Side of a cell in metres [default: as the configuration says, 0.1]
+    #[arg(long, value_name = "M", value_parser = resolution)]
+    pub(crate) resolution: Option<f64>,
+    /// A frame is used if the robot moved this far since the last one used, or turned:
+    /// standing still is no evidence. 0 uses every frame
+    #[arg(long, value_name = "M", value_parser = every, default_value = "0.05")]
+    pub(crate) every: f64,
+    /// ... or turned by so many degrees
+    #[arg(long, value_name = "DEG", value_parser = every_degrees, default_value = "5")]
+    pub(crate) every_degrees: f64,
+    /// Where the results go [default: out/LOG-SENSOR]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Log {
+    /// The folder that `explore` wrote (or the DIR.partial that it is writing)
+    pub(crate) dir: PathBuf,
+    /// The log that is written
+    #[arg(long, value_name = "FILE.log")]
+    pub(crate) out: PathBuf,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct Truth {
     /// A scenario (.ron), or a map of ROS map_server (.yaml with its .pgm)
@@ -200,6 +293,14 @@ fn resolution(text: &str) -> Result<f64, String> {
 
 fn while_driving(text: &str) -> Result<f64, String> {
     number(text, 0.01, 1e6)
+}
+
+fn every(text: &str) -> Result<f64, String> {
+    number(text, 0.0, 1e3)
+}
+
+fn every_degrees(text: &str) -> Result<f64, String> {
+    number(text, 0.0, 360.0).map_err(|error| error.replace(" m", " degrees"))
 }
 
 fn range(text: &str) -> Result<f64, String> {

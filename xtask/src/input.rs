@@ -14,6 +14,9 @@ use std::path::{Path, PathBuf};
 /// The shipped default, so that it works in any folder.
 const DEFAULT_CONFIG: &str = include_str!("../../configs/b21r.ron");
 const DEFAULT_CONFIG_NAME: &str = "configs/b21r.ron";
+/// The robot of the logs in three files.
+const FOLDER_CONFIG: &str = include_str!("../../configs/sonar8.ron");
+const FOLDER_CONFIG_NAME: &str = "configs/sonar8.ron";
 /// A beam, or the robot, may be so many cells long: beyond, tables of them fill the memory.
 const MOST_CELLS_ALONG: f64 = 1500.0;
 /// A belief may have so many numbers: 2·10⁷ cells of 11 bins.
@@ -26,10 +29,19 @@ pub(crate) fn about<E: Display>(path: &Path) -> impl Fn(E) -> anyhow::Error {
 
 /// The configuration in a file, or the default; and its name for errors.
 pub(crate) fn config(file: Option<&Path>) -> Result<(Config, PathBuf)> {
-    let name = file.unwrap_or(Path::new(DEFAULT_CONFIG_NAME));
+    config_or(file, (DEFAULT_CONFIG_NAME, DEFAULT_CONFIG))
+}
+
+/// The configuration in a file, or the default for a folder with a log in three files.
+pub(crate) fn folder_config(file: Option<&Path>) -> Result<(Config, PathBuf)> {
+    config_or(file, (FOLDER_CONFIG_NAME, FOLDER_CONFIG))
+}
+
+fn config_or(file: Option<&Path>, (name, text): (&str, &str)) -> Result<(Config, PathBuf)> {
+    let name = file.unwrap_or(Path::new(name));
     let config = match file {
         Some(file) => read_ron(file)?,
-        None => parse_ron(name, DEFAULT_CONFIG)?,
+        None => parse_ron(name, text)?,
     };
     Ok((config, name.to_owned()))
 }

@@ -13,6 +13,10 @@ mod fit;
 mod fit_file;
 mod input;
 mod interrupt;
+mod log;
+mod map;
+mod map_pictures;
+mod mapper;
 mod model;
 mod pictures;
 mod progress;
@@ -20,6 +24,7 @@ mod replay;
 mod results;
 mod say;
 mod trace_file;
+mod trail;
 mod truth;
 
 use arguments::{Arguments, Command};
@@ -33,6 +38,8 @@ fn main() -> ExitCode {
     let done = match Arguments::parse().command {
         Command::Explore(arguments) => explore::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Map(arguments) => map::run(&arguments),
+        Command::Log(arguments) => log::run(&arguments),
         Command::Truth(arguments) => truth::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),

@@ -37,41 +37,21 @@ impl Pictures<'_> {
         picture
     }
 
-    /// Adds the trajectory with its ends.
-    fn with_path(&self, mut picture: Picture) -> Picture {
-        let path = &self.run.trajectory;
-        let heading = self.mission.start.rotation.angle();
-        let start = Point2::from(self.mission.start.translation.vector);
-        let end = path.last().copied().unwrap_or(start);
-        let (disc, arrow) = (Marker::Disc, Marker::Arrow { heading });
-        picture
-            .polyline(path, Rgb::BLUE, PATH_WIDTH)
-            .marker(start, disc, Rgb::GREEN, START_SIZE)
-            .marker(end, arrow, Rgb::RED, END_SIZE)
-            .key(Key::Line(Rgb::BLUE), "trajectory")
-            .key(Key::Marker(disc, Rgb::GREEN), "start")
-            .key(Key::Marker(arrow, Rgb::RED), "end");
-        picture
-    }
-
     /// The most likely coverage, and the path.
     pub(crate) fn coverage(&self) -> Picture {
         let mut picture = self.begin("most likely coverage");
+        draw_coverage(&mut picture, &self.run.map, self.mission.config.planner.entropy_threshold);
+        let path = &self.run.trajectory;
+        let start = Point2::from(self.mission.start.translation.vector);
+        let end = path.last().copied().unwrap_or(start);
+        draw_path(&mut picture, path, start, (end, self.mission.start.rotation.angle()));
         picture
-            .cells(&certain_coverage(&self.run.map, self.mission), |color| *color)
-            .color_bar("coverage", 0.0, 1.0, |c| coverage_color(Some(c)))
-            .legend(&[(Rgb::UNKNOWN, "unknown (uncertain cells fade to it)")]);
-        self.with_path(picture)
     }
 
     /// How uncertain each cell is.
     pub(crate) fn entropy(&self) -> Picture {
-        let map = &self.run.map;
-        let most = most_entropy(map);
         let mut picture = self.begin("entropy of the coverage");
-        picture
-            .cells(&map.entropy_map(), |entropy| ColorMap::Viridis.color(entropy / most))
-            .color_bar("entropy H [nats]", 0.0, most, |t| ColorMap::Viridis.color(t));
+        draw_entropy(&mut picture, &self.run.map);
         picture
     }
 
@@ -97,10 +77,7 @@ impl Pictures<'_> {
         pinned.for_each(|cell| occupancy.pin_free(cell));
         self.run.scans.iter().for_each(|scan| occupancy.integrate(&model, scan));
         let mut picture = self.begin("log-odds occupancy grid of the same scans");
-        picture
-            .cells(&occupancy.probabilities(), |p| coverage_color(*p))
-            .color_bar("probability that it is occupied", 0.0, 1.0, |p| coverage_color(Some(p)))
-            .legend(&[(Rgb::UNKNOWN, "unknown")]);
+        draw_occupancy(&mut picture, &occupancy);
         Ok(picture)
     }
 
@@ -123,10 +100,57 @@ impl Pictures<'_> {
     }
 }
 
+/// The most likely coverage of each cell. What is not `explored` well enough \[nats\] fades.
+pub(crate) fn draw_coverage(picture: &mut Picture, map: &CoverageMap, explored: f64) {
+    picture
+        .cells(&faded(map, explored), |color| *color)
+        .color_bar("coverage", 0.0, 1.0, |c| coverage_color(Some(c)))
+        .legend(&[(Rgb::UNKNOWN, "unknown (uncertain cells fade to it)")]);
+}
+
+/// The entropy of each cell.
+pub(crate) fn draw_entropy(picture: &mut Picture, map: &CoverageMap) {
+    let most = most_entropy(map);
+    picture.cells(&map.entropy_map(), |entropy| ColorMap::Viridis.color(entropy / most)).color_bar(
+        "entropy H [nats]",
+        0.0,
+        most,
+        |t| ColorMap::Viridis.color(t),
+    );
+}
+
+/// The probability that each cell is occupied.
+pub(crate) fn draw_occupancy(picture: &mut Picture, occupancy: &OccupancyGrid) {
+    picture
+        .cells(&occupancy.probabilities(), |p| coverage_color(*p))
+        .color_bar("probability that it is occupied", 0.0, 1.0, |p| coverage_color(Some(p)))
+        .legend(&[(Rgb::UNKNOWN, "unknown")]);
+}
+
+/// A trajectory with its start, and its end with the heading there.
+pub(crate) fn draw_path(
+    picture: &mut Picture,
+    path: &[Point2<f64>],
+    start: Point2<f64>,
+    (end, heading): (Point2<f64>, f64),
+) {
+    let (disc, arrow) = (Marker::Disc, Marker::Arrow { heading });
+    picture
+        .polyline(path, Rgb::BLUE, PATH_WIDTH)
+        .marker(start, disc, Rgb::GREEN, START_SIZE)
+        .marker(end, arrow, Rgb::RED, END_SIZE)
+        .key(Key::Line(Rgb::BLUE), "trajectory")
+        .key(Key::Marker(disc, Rgb::GREEN), "start")
+        .key(Key::Marker(arrow, Rgb::RED), "end");
+}
+
 /// The colour of the most likely coverage of each cell. What is not explored well enough
 /// (H > ε) fades towards the colour of what nobody knows.
 pub(crate) fn certain_coverage(map: &CoverageMap, mission: &Mission) -> Raster<Rgb> {
-    let explored = mission.config.planner.entropy_threshold;
+    faded(map, mission.config.planner.entropy_threshold)
+}
+
+fn faded(map: &CoverageMap, explored: f64) -> Raster<Rgb> {
     let most = most_entropy(map);
     Raster::from_fn(*map.grid(), |cell| {
         let coverage = map.is_known(cell).then(|| map.mode(cell));

@@ -50,6 +50,16 @@ impl Progress {
         self.next = Instant::now() + PAUSE.max(now.elapsed() * PATIENCE);
     }
 
+    /// Shows a line that is not of an exploration, but not too often.
+    pub(crate) fn tell(&mut self, text: impl FnOnce() -> String) {
+        let Some(line) = &self.line else { return };
+        let now = Instant::now();
+        if now >= self.next {
+            line.set_message(text());
+            self.next = now + PAUSE;
+        }
+    }
+
     /// Says that something else takes time now.
     pub(crate) fn say(&self, text: &str) {
         if let Some(line) = &self.line {

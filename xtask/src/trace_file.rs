@@ -96,7 +96,8 @@ fn no_such_decision(step: usize, decisions: usize) -> String {
     }
 }
 
-fn read_header(path: &Path) -> Result<TraceHeader> {
+/// The header of a trace.
+pub(crate) fn read_header(path: &Path) -> Result<TraceHeader> {
     let empty = || anyhow!("{}: the trace is empty", path.display());
     let Version { covmap_trace } = read_json_lines(path)?.next().ok_or_else(empty)??;
     if covmap_trace != TRACE_VERSION {

@@ -1,7 +1,7 @@
-//! Files and pictures: RON, JSON lines, the maps of ROS, and PNG pictures of rasters.
+//! Files and pictures: RON, JSON lines, the maps of ROS, logs, and PNG pictures of rasters.
 //!
 //! Nothing of Stachniss & Burgard (2003) is in here: [`Picture`] draws, [`OutputFolder`] holds
-//! results that are whole, and [`FileError`] says in one sentence what is wrong with a file.
+//! what is whole, [`log::LogReader`] reads scans, [`FileError`] says what is wrong with a file.
 //!
 //! This crate knows nothing of worlds, models and planners: it reads what serde can.
 //!
@@ -15,7 +15,6 @@
 //! let results = OutputFolder::create("out/building")?;
 //! Picture::new(building.grid)
 //!     .cells(&building.solid(), |solid| if *solid { Rgb::INK } else { Rgb::WHITE })
-//!     .scale_bar()
 //!     .save(results.path("truth.png"))?;
 //! results.finish()?;
 //! # Ok::<(), covmap_io::FileError>(())
@@ -23,6 +22,7 @@
 mod error;
 mod json;
 mod json_lines;
+pub mod log;
 mod map_server;
 mod output_folder;
 mod pgm;

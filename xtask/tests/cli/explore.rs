@@ -208,7 +208,7 @@ fn help_names_all_options() {
         assert!(help.contains(option), "{option}");
     }
     let help = shell.expect("--help", 0).out;
-    for command in ["explore", "explain", "truth", "model"] {
+    for command in ["explore", "explain", "map", "log", "truth", "model"] {
         assert!(help.contains(command), "{command}");
     }
 }

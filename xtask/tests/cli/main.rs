@@ -6,5 +6,6 @@ mod bad_maps;
 mod explain;
 mod explore;
 mod interrupt;
+mod map;
 mod tables;
 mod typed;

@@ -1,0 +1,129 @@
+//! What the lines of a CARMEN log say, and what they leave open.
+
+use super::SkipReason;
+use super::fields::Fields;
+use super::skipped::Damage;
+use nalgebra::Isometry2;
+
+/// A line `SONAR`: the readings, and where the sensors are in the frame of the robot.
+pub(super) struct SonarLine {
+    /// The whole opening angle of each cone \[rad\].
+    pub(super) cone_angle: f64,
+    pub(super) ranges: Vec<f64>,
+    /// x, y \[m\] and theta \[rad\] of each sensor.
+    pub(super) places: Vec<[f64; 3]>,
+    pub(super) time: f64,
+}
+
+/// What a laser says of itself.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct LaserIdentity {
+    pub(super) count: usize,
+    /// Tag `ROBOTLASER1`, with the angle of its first beam and the step \[rad\], and its
+    /// longest range \[m\]; or tag `FLASER`, which says nothing of them.
+    pub(super) described: Option<(f64, f64, f64)>,
+}
+
+/// A line `FLASER` or `ROBOTLASER1`.
+pub(super) struct LaserLine {
+    pub(super) identity: LaserIdentity,
+    pub(super) ranges: Vec<f64>,
+    /// `world_from_laser`.
+    pub(super) laser: Isometry2<f64>,
+    /// `world_from_robot`, by odometry.
+    pub(super) robot: Isometry2<f64>,
+    pub(super) time: f64,
+}
+
+/// `ODOM x y theta tv rv accel ipc_timestamp host logger_timestamp`
+pub(super) fn odometry(fields: &mut Fields<'_>) -> Result<(f64, Isometry2<f64>), Damage> {
+    let pose = fields.pose(["x", "y", "theta"], 1.0, 1.0)?;
+    fields.skip(3);
+    Ok((end(fields)?, pose))
+}
+
+/// `SONAR cone_angle n r_1 … r_n (x y theta)·n ipc_timestamp host logger_timestamp`
+pub(super) fn sonar(fields: &mut Fields<'_>) -> Result<SonarLine, Damage> {
+    let cone_angle = fields.number("cone_angle")?;
+    let count = fields.count("number of ranges")?;
+    expect_words(fields, count, count.saturating_mul(4))?;
+    let ranges = fields.ranges(count, 1.0)?;
+    let place = |i: usize, fields: &mut Fields<'_>| {
+        let mut number = |what| fields.number(&format!("{what} of sensor {i}"));
+        Ok([number("x")?, number("y")?, number("theta")?])
+    };
+    let places = (0..count).map(|i| place(i, fields)).collect::<Result<_, Damage>>()?;
+    Ok(SonarLine { cone_angle, ranges, places, time: end(fields)? })
+}
+
+/// `FLASER n r_1 … r_n x y theta odom_x odom_y odom_theta ipc_timestamp host logger_timestamp`
+pub(super) fn flaser(fields: &mut Fields<'_>) -> Result<LaserLine, Damage> {
+    let count = fields.count("number of ranges")?;
+    expect_words(fields, count, count.saturating_add(6))?;
+    let ranges = fields.ranges(count, 1.0)?;
+    let laser = fields.pose(["x", "y", "theta"], 1.0, 1.0)?;
+    let robot = fields.pose(["odom_x", "odom_y", "odom_theta"], 1.0, 1.0)?;
+    let identity = LaserIdentity { count, described: None };
+    Ok(LaserLine { identity, ranges, laser, robot, time: end(fields)? })
+}
+
+/// `ROBOTLASER1 type start fov resolution max accuracy remission_mode n r… m rem… laser_x
+/// laser_y laser_theta robot_x robot_y robot_theta tv rv forward_safety side_safety turn_axis
+/// ipc_timestamp host logger_timestamp`
+pub(super) fn robot_laser(fields: &mut Fields<'_>) -> Result<LaserLine, Damage> {
+    fields.skip(1);
+    let start = fields.number("start angle")?;
+    fields.skip(1);
+    let step = fields.number("angular resolution")?;
+    let max_range = fields.number("maximum range")?;
+    fields.skip(2);
+    let count = fields.count("number of ranges")?;
+    if count > fields.left() {
+        return Err(too_few(fields, count));
+    }
+    let ranges = fields.ranges(count, 1.0)?;
+    let remissions = fields.count("number of remissions")?;
+    expect_words(fields, count, remissions.saturating_add(11))?;
+    fields.skip(remissions);
+    let laser = fields.pose(["laser_x", "laser_y", "laser_theta"], 1.0, 1.0)?;
+    let robot = fields.pose(["robot_x", "robot_y", "robot_theta"], 1.0, 1.0)?;
+    fields.skip(5);
+    let identity = LaserIdentity { count, described: Some((start, step, max_range)) };
+    Ok(LaserLine { identity, ranges, laser, robot, time: end(fields)? })
+}
+
+/// The time at which the sensor measured, and a host after it: without that, the number may
+/// have been cut.
+fn end(fields: &mut Fields<'_>) -> Result<f64, Damage> {
+    let time = fields.time("ipc_timestamp", 1.0)?;
+    fields.word("host")?;
+    Ok(time)
+}
+
+/// Checks that so many words come before the time, the host and the logger's time, which may
+/// be left out.
+fn expect_words(fields: &Fields<'_>, count: usize, words: usize) -> Result<(), Damage> {
+    let there = fields.left();
+    let without = there == words.saturating_add(2) && !fields.ends_with_number();
+    if there == words.saturating_add(3) || without {
+        return Ok(());
+    }
+    let more = there > words.saturating_add(3);
+    Err(if more { wrong_count(count) } else { too_few(fields, count) })
+}
+
+/// A line that has its end, but not all of its ranges, was not cut short.
+fn too_few(fields: &Fields<'_>, count: usize) -> Damage {
+    if fields.ends_with_host_and_time() {
+        return wrong_count(count);
+    }
+    Damage::new(
+        SkipReason::Unreadable,
+        format!("the line is cut short: it announces {count} ranges"),
+    )
+}
+
+fn wrong_count(count: usize) -> Damage {
+    let fault = format!("ranges: {count} are announced, but the line is not as long as that");
+    Damage::new(SkipReason::Count, fault)
+}

@@ -1,0 +1,132 @@
+//! Writing a CARMEN log.
+
+use covmap_sonar::{Range, Scan, SonarRing};
+use std::io::{self, Write};
+
+/// The parameters in which our logs say what the format has no place for \[m\].
+pub(super) const MIN_RANGE: &str = "covmap_sonar_min_range";
+pub(super) const MAX_RANGE: &str = "covmap_sonar_max_range";
+
+/// Why a scan cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum CarmenWriterError {
+    /// The operating system refused.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// A line has one angle for all sensors.
+    #[error(
+        "sensor {0} has another cone or other ranges than sensor 0, which a CARMEN log cannot say"
+    )]
+    Unequal(usize),
+    /// The scan comes from another ring.
+    #[error("scan {scan} has {ranges} ranges, but the ring has {sensors} sensors")]
+    Count {
+        /// The scan, counted from 0.
+        scan: usize,
+        /// How many readings it has.
+        ranges: usize,
+        /// How many sensors there are.
+        sensors: usize,
+    },
+    /// A pose or a time that is no number, or time that runs backwards.
+    #[error("scan {0}: pose and time must be finite, and time must not run backwards")]
+    PoseOrTime(usize),
+    /// An echo that would be read as none or as missing.
+    #[error("scan {scan}: an echo at {range} m is out of the sensor's range, {min} to {max} m")]
+    Echo {
+        /// The scan, counted from 0.
+        scan: usize,
+        /// The range \[m\].
+        range: f64,
+        /// The shortest range \[m\].
+        min: f64,
+        /// The longest range, which is none any more \[m\].
+        max: f64,
+    },
+}
+
+/// Writes scans of a ring as a CARMEN text log: for each a line `ODOM` and a line `SONAR` of the
+/// same time.
+///
+/// A [`LogReader`](super::LogReader) makes the same scans of it: ranges, times and positions to
+/// the last bit, headings up to rounding (10⁻¹⁵ rad). `NoEcho` is written as the longest range,
+/// `Missing` as 0. The format has no place for the shortest and longest ranges; they are in
+/// `PARAM covmap_sonar_min_range` and `PARAM covmap_sonar_max_range` \[m\].
+#[derive(Debug)]
+pub struct CarmenWriter<'a, W: Write> {
+    ring: &'a SonarRing,
+    out: W,
+    scans: usize,
+    last: f64,
+}
+
+impl<'a, W: Write> CarmenWriter<'a, W> {
+    /// Begins a log.
+    ///
+    /// # Errors
+    /// If the sensors have different cones or ranges, or it cannot be written.
+    #[allow(clippy::float_cmp, reason = "equal means equal")]
+    pub fn new(ring: &'a SonarRing, mut out: W) -> Result<Self, CarmenWriterError> {
+        let shape = |i: usize| {
+            let beam = &ring.beams()[i];
+            (beam.half_angle, beam.min_range, beam.max_range)
+        };
+        if let Some(i) = (0..ring.beams().len()).find(|i| shape(*i) != shape(0)) {
+            return Err(CarmenWriterError::Unequal(i));
+        }
+        let (_, min_range, max_range) = shape(0);
+        writeln!(out, "# CARMEN text log, by covmap; metres, radians, seconds")?;
+        writeln!(out, "# SONAR: at or above {MAX_RANGE} is no echo, 0 is no reading")?;
+        writeln!(out, "PARAM {MIN_RANGE} {min_range:?} 0.0 covmap 0.0")?;
+        writeln!(out, "PARAM {MAX_RANGE} {max_range:?} 0.0 covmap 0.0")?;
+        Ok(Self { ring, out, scans: 0, last: f64::NEG_INFINITY })
+    }
+
+    /// Writes a scan.
+    ///
+    /// # Errors
+    /// If it does not fit the ring or the scans before it, or cannot be written.
+    pub fn write(&mut self, scan: &Scan) -> Result<(), CarmenWriterError> {
+        let number = self.scans;
+        let Scan { pose, time, ranges } = scan;
+        let beams = self.ring.beams();
+        if ranges.len() != beams.len() {
+            let (ranges, sensors) = (ranges.len(), beams.len());
+            return Err(CarmenWriterError::Count { scan: number, ranges, sensors });
+        }
+        let (x, y, theta) = (pose.translation.x, pose.translation.y, pose.rotation.angle());
+        let finite = [x, y, theta, *time].iter().all(|value| value.is_finite());
+        if !finite || *time < self.last {
+            return Err(CarmenWriterError::PoseOrTime(number));
+        }
+        let (min, max) = (beams[0].min_range, beams[0].max_range);
+        let value = |range: &Range| match *range {
+            Range::Echo(d) if d > 0.0 && d >= min && d < max => Ok(d),
+            Range::Echo(range) => Err(CarmenWriterError::Echo { scan: number, range, min, max }),
+            Range::NoEcho => Ok(max),
+            Range::Missing => Ok(0.0),
+        };
+        let values = ranges.iter().map(value).collect::<Result<Vec<f64>, _>>()?;
+        let out = &mut self.out;
+        writeln!(out, "ODOM {x:?} {y:?} {theta:?} 0.0 0.0 0.0 {time:?} covmap {time:?}")?;
+        write!(out, "SONAR {:?} {}", 2.0 * beams[0].half_angle, beams.len())?;
+        values.iter().try_for_each(|value| write!(out, " {value:?}"))?;
+        for beam in beams {
+            let (place, angle) = (beam.pose.translation.vector, beam.pose.rotation.angle());
+            write!(out, " {:?} {:?} {angle:?}", place.x, place.y)?;
+        }
+        writeln!(out, " {time:?} covmap {time:?}")?;
+        (self.scans, self.last) = (number + 1, *time);
+        Ok(())
+    }
+
+    /// Hands all that was written to the operating system, and says how many scans there were.
+    ///
+    /// # Errors
+    /// If it cannot be written.
+    pub fn finish(mut self) -> Result<usize, CarmenWriterError> {
+        self.out.flush()?;
+        Ok(self.scans)
+    }
+}

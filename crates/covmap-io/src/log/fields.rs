@@ -1,0 +1,105 @@
+//! The fields of a line.
+
+use super::SkipReason;
+use super::skipped::Damage;
+use nalgebra::{Isometry2, Vector2};
+
+/// No robot is farther from the origin than this \[m\].
+const FARTHEST: f64 = 1e7;
+/// No clock shows more than this \[s\].
+const LATEST: f64 = 1e13;
+
+/// The words of a line, taken one after the other.
+pub(super) struct Fields<'a> {
+    words: Vec<&'a str>,
+    next: usize,
+}
+
+impl<'a> Fields<'a> {
+    pub(super) fn new(line: &'a str) -> Self {
+        Self { words: line.split_ascii_whitespace().collect(), next: 0 }
+    }
+
+    /// How many words there are after those that were taken.
+    pub(super) fn left(&self) -> usize {
+        self.words.len() - self.next
+    }
+
+    /// Whether the line ends as CARMEN ends its lines, with a host that is no number and a
+    /// time.
+    pub(super) fn ends_with_host_and_time(&self) -> bool {
+        let number = |word: &&str| word.parse::<f64>().is_ok();
+        matches!(self.words[self.next..], [.., host, time] if !number(&host) && number(&time))
+    }
+
+    /// Whether the line ends in a number.
+    pub(super) fn ends_with_number(&self) -> bool {
+        self.words.last().is_some_and(|word| word.parse::<f64>().is_ok())
+    }
+
+    pub(super) fn word(&mut self, field: &str) -> Result<&'a str, Damage> {
+        let word = self.words.get(self.next).copied();
+        self.skip(1);
+        word.ok_or_else(|| unreadable(field, "is missing; the line is cut short"))
+    }
+
+    /// Any number, also NaN.
+    fn any_number(&mut self, field: &str) -> Result<f64, Damage> {
+        let word = self.word(field)?;
+        word.parse().map_err(|_| unreadable(field, &format!("`{}` is not a number", short(word))))
+    }
+
+    /// A number of at most `most`, up or down.
+    fn number_up_to(&mut self, field: &str, most: f64) -> Result<f64, Damage> {
+        let value = self.any_number(field)?;
+        let good = (-most..=most).contains(&value);
+        good.then_some(value).ok_or_else(|| unreadable(field, &format!("{value} is out of range")))
+    }
+
+    pub(super) fn number(&mut self, field: &str) -> Result<f64, Damage> {
+        self.number_up_to(field, FARTHEST)
+    }
+
+    /// A time, in units of which a second has `per_second`.
+    pub(super) fn time(&mut self, field: &str, per_second: f64) -> Result<f64, Damage> {
+        Ok(self.number_up_to(field, LATEST)? / per_second)
+    }
+
+    pub(super) fn count(&mut self, field: &str) -> Result<usize, Damage> {
+        let word = self.word(field)?;
+        word.parse().map_err(|_| unreadable(field, &format!("`{}` is not a count", short(word))))
+    }
+
+    /// A pose from three fields, in units of which a metre and a radian have so many.
+    pub(super) fn pose(
+        &mut self,
+        fields: [&str; 3],
+        per_metre: f64,
+        per_radian: f64,
+    ) -> Result<Isometry2<f64>, Damage> {
+        let [x, y, theta] = fields;
+        let place = Vector2::new(self.number(x)?, self.number(y)?) / per_metre;
+        Ok(Isometry2::new(place, self.number(theta)? / per_radian))
+    }
+
+    /// So many ranges, in units of which a metre has `per_metre`; NaN and infinity, too.
+    pub(super) fn ranges(&mut self, count: usize, per_metre: f64) -> Result<Vec<f64>, Damage> {
+        (0..count.min(self.left()))
+            .map(|i| Ok(self.any_number(&format!("range {i}"))? / per_metre))
+            .collect()
+    }
+
+    /// Passes over some words.
+    pub(super) fn skip(&mut self, count: usize) {
+        self.next = self.next.saturating_add(count).min(self.words.len());
+    }
+}
+
+fn unreadable(field: &str, fault: &str) -> Damage {
+    Damage::new(SkipReason::Unreadable, format!("{field}: {fault}"))
+}
+
+/// A word, or its beginning.
+fn short(word: &str) -> String {
+    word.chars().take(20).collect()
+}

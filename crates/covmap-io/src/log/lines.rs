@@ -1,0 +1,139 @@
+//! The lines of a text file, plain or packed, and never too much of them.
+
+use super::LogError;
+use flate2::read::MultiGzDecoder;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Cursor, Read};
+use std::path::{Path, PathBuf};
+
+/// The longest line that is read \[bytes\]: 4096 sonars with their places take half of it.
+pub(super) const LONGEST_LINE: usize = 1 << 20;
+/// A packed file may unpack to so many times its size, and always to [`ALWAYS_UNPACKED`].
+/// Logs of a robot that stands still come to about 100; what is made to fill a disk, to 1000.
+pub(super) const MOST_RATIO: u64 = 300;
+/// So much may always be unpacked \[bytes\].
+const ALWAYS_UNPACKED: u64 = 16 << 20;
+
+type Input = Box<dyn Read + Send>;
+
+/// The lines of a file, one after the other.
+pub(super) struct Lines {
+    path: PathBuf,
+    input: BufReader<Input>,
+    packed: bool,
+    line: usize,
+    bytes: Vec<u8>,
+}
+
+impl Lines {
+    /// The lines of a file.
+    pub(super) fn open(path: &Path) -> Result<Self, LogError> {
+        let io = |source| LogError::Io { path: path.to_owned(), source };
+        // Looked at first: to open a pipe may take for ever.
+        if !std::fs::metadata(path).map_err(io)?.is_file() {
+            return Err(LogError::NotAFile { path: path.to_owned() });
+        }
+        Self::new(path, File::open(path).map_err(io)?)
+    }
+
+    /// The lines of `input`, which `path` names in errors.
+    pub(super) fn new(
+        path: &Path,
+        mut input: impl Read + Send + 'static,
+    ) -> Result<Self, LogError> {
+        let io = |source| LogError::Io { path: path.to_owned(), source };
+        let mut head = Vec::new();
+        input.by_ref().take(2).read_to_end(&mut head).map_err(io)?;
+        let packed = head == [0x1f, 0x8b];
+        let whole = Cursor::new(head).chain(input);
+        let input: Input = if packed {
+            let packed = Counted { input: BufReader::new(whole), bytes: 0 };
+            Box::new(Unpacker { decoder: MultiGzDecoder::new(packed), unpacked: 0 })
+        } else {
+            Box::new(whole)
+        };
+        let (path, input) = (path.to_owned(), BufReader::with_capacity(1 << 16, input));
+        Ok(Self { path, input, packed, line: 0, bytes: Vec::new() })
+    }
+
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// The number of the last line, counted from 1.
+    pub(super) fn line(&self) -> usize {
+        self.line
+    }
+
+    /// Goes to the next line that is neither empty nor a comment; false after the last.
+    pub(super) fn advance(&mut self) -> Result<bool, LogError> {
+        loop {
+            if !self.read_line()? {
+                return Ok(false);
+            }
+            let first = self.bytes.trim_ascii_start().first();
+            if first.is_some_and(|byte| *byte != b'#') {
+                return Ok(true);
+            }
+        }
+    }
+
+    /// The text of the line; what is no UTF-8 in it is replaced.
+    pub(super) fn text(&self) -> std::borrow::Cow<'_, str> {
+        String::from_utf8_lossy(&self.bytes)
+    }
+
+    fn read_line(&mut self) -> Result<bool, LogError> {
+        self.bytes.clear();
+        self.line += 1;
+        let mut input = self.input.by_ref().take(LONGEST_LINE as u64 + 1);
+        if let Err(source) = input.read_until(b'\n', &mut self.bytes) {
+            return Err(self.error(source));
+        }
+        if self.bytes.len() > LONGEST_LINE {
+            return Err(LogError::LongLine { path: self.path.clone(), line: self.line });
+        }
+        Ok(!self.bytes.is_empty())
+    }
+
+    fn error(&self, source: io::Error) -> LogError {
+        let (path, line) = (self.path.clone(), self.line);
+        match source.kind() {
+            io::ErrorKind::FileTooLarge if self.packed => LogError::Unpacked { path, line },
+            _ if self.packed => LogError::Gzip { path, line, source },
+            _ => LogError::Io { path, source },
+        }
+    }
+}
+
+/// Counts the bytes that are read.
+struct Counted<R> {
+    input: R,
+    bytes: u64,
+}
+
+impl<R: Read> Read for Counted<R> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        let count = self.input.read(out)?;
+        self.bytes += count as u64;
+        Ok(count)
+    }
+}
+
+/// Unpacks, but not without end.
+struct Unpacker<R> {
+    decoder: MultiGzDecoder<Counted<R>>,
+    unpacked: u64,
+}
+
+impl<R: Read> Read for Unpacker<R> {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        let count = self.decoder.read(out)?;
+        self.unpacked += count as u64;
+        let most = ALWAYS_UNPACKED + MOST_RATIO * self.decoder.get_ref().bytes;
+        if self.unpacked > most {
+            return Err(io::ErrorKind::FileTooLarge.into());
+        }
+        Ok(count)
+    }
+}

@@ -1,0 +1,232 @@
+//! `map`: the map of what a real robot recorded.
+
+use crate::arguments::{Map, SensorName};
+use crate::input::about;
+use crate::map_pictures::MapPictures;
+use crate::mapper::{Log, Mapper, Stride, Survey};
+use crate::progress::Progress;
+use crate::{input, say};
+use anyhow::Result;
+use covmap::CoverageMap;
+use covmap_explore::Config;
+use covmap_io::log::{LogOptions, Sensor, Skipped};
+use covmap_io::{CoverageThresholds, OutputFolder, save_map_server, write_json};
+use covmap_model::{Footprint, FootprintRule, SensorModel};
+use covmap_plan::BodyEvidence;
+use covmap_sonar::{Beam, SonarRing};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Instant;
+
+/// A sensor's axis may pass the robot's centre at this distance, and sectors from the centre
+/// still describe it \[m\].
+const OFF_CENTRE: f64 = 0.05;
+
+/// What `summary.json` holds: of the keys of an exploration those that apply.
+#[derive(Debug, Serialize)]
+pub(crate) struct MapSummary {
+    /// The log's name.
+    pub(crate) world: String,
+    pub(crate) sensor: &'static str,
+    /// r \[m\].
+    pub(crate) resolution: f64,
+    /// Frames of the log: skipped, standing, or scans of the map.
+    frames: usize,
+    skipped: usize,
+    standing: usize,
+    pub(crate) scans: usize,
+    /// Places where the poses jump by more than a metre.
+    jumps: usize,
+    pub(crate) path_length_m: f64,
+    cells: CellCounts,
+    /// The share of the known cells that the body did not pin with an entropy above .65.
+    share_entropy_above_0_65: f64,
+    seconds: f64,
+    /// What was lost of the log, in words.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    warning: Option<String>,
+}
+
+#[derive(Debug, Serialize)]
+struct CellCounts {
+    known: usize,
+    unknown: usize,
+}
+
+pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
+    let begun = Instant::now();
+    let config = config(arguments)?;
+    let log = log(arguments, &config)?;
+    let mut progress = Progress::new(arguments.quiet);
+    let survey = log.survey(&mut progress)?;
+    let (model, remark) = model(&config, arguments.sensor, &survey.ring)?;
+    let grid = survey.grid(&model, config.robot.radius, &log.path)?;
+    input::check_size(&grid, &config).map_err(about(&log.path))?;
+    let body =
+        (config.planner.body_evidence == BodyEvidence::Belief).then_some(config.robot.radius);
+    let stride = Stride { every: arguments.every, turn: arguments.every_degrees.to_radians() };
+    let folder = OutputFolder::create(folder_name(arguments))?;
+    let mapper = Mapper::new(grid, model, stride, body)?;
+    let mapper = log.map(&survey, mapper, &mut progress)?;
+    progress.say("drawing the map …");
+    let seconds = begun.elapsed().as_secs_f64();
+    let summary = summary(arguments, &survey, &mapper, seconds);
+    write(&folder, &mapper, &summary, config.planner.entropy_threshold)?;
+    let written = folder.finish()?;
+    progress.finish();
+    if !arguments.quiet {
+        report(arguments, &summary, remark.as_deref(), &written);
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+fn config(arguments: &Map) -> Result<Config> {
+    let file = arguments.config.as_deref();
+    let (mut config, name) =
+        if arguments.log.is_dir() { input::folder_config(file)? } else { input::config(file)? };
+    if let Some(resolution) = arguments.resolution {
+        config.resolution = resolution;
+    }
+    input::check(&config, &name)?;
+    Ok(config)
+}
+
+fn log(arguments: &Map, config: &Config) -> Result<Log> {
+    let (ring, _) = config.build()?;
+    let sensor = match arguments.sensor {
+        SensorName::Sonar => Sensor::Sonar,
+        SensorName::Laser => Sensor::Laser,
+    };
+    let options = LogOptions { sensor, ring, poses: arguments.poses.clone() };
+    Ok(Log { path: arguments.log.clone(), options })
+}
+
+/// The sensor model for the ring of a log, and what there is to remark about it.
+fn model(
+    config: &Config,
+    sensor: SensorName,
+    ring: &SonarRing,
+) -> Result<(SensorModel, Option<String>)> {
+    let mut parameters = config.model.clone();
+    let mut remark = None;
+    match (sensor, parameters.footprint) {
+        (SensorName::Laser, _) => parameters.footprint = FootprintRule::Cones { half_angle: 0.0 },
+        (SensorName::Sonar, rule @ FootprintRule::Sectors { half_angle }) => {
+            let centred = ring.beams().iter().all(looks_outwards);
+            if !centred || Footprint::new(ring, &rule).is_err() {
+                parameters.footprint = FootprintRule::Cones { half_angle };
+                remark = Some(format!(
+                    "the log's sensors do not look straight out from one centre: cones of {:.1}° \
+                     instead of sectors",
+                    half_angle.to_degrees()
+                ));
+            }
+        }
+        (SensorName::Sonar, FootprintRule::Cones { .. }) => {}
+    }
+    Ok((SensorModel::new(&parameters, ring, config.resolution)?, remark))
+}
+
+/// Whether a sensor's axis comes from the robot's centre.
+fn looks_outwards(beam: &Beam) -> bool {
+    let place = beam.pose.rotation.inverse() * beam.pose.translation.vector;
+    place.y.abs() <= OFF_CENTRE && place.x >= -OFF_CENTRE
+}
+
+fn sensor_name(sensor: SensorName) -> &'static str {
+    match sensor {
+        SensorName::Sonar => "sonar",
+        SensorName::Laser => "laser",
+    }
+}
+
+/// The name of a log: its file's or folder's, without what says how it is stored.
+fn log_name(log: &Path) -> String {
+    let whole = log.canonicalize().unwrap_or_else(|_| log.to_owned());
+    let name = whole.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    let endings = [".gz", ".log", ".clf", ".txt"];
+    let short =
+        endings.iter().fold(name.as_str(), |name, end| name.strip_suffix(end).unwrap_or(name));
+    if short.is_empty() { "log".to_owned() } else { short.to_owned() }
+}
+
+fn folder_name(arguments: &Map) -> PathBuf {
+    let name = format!("{}-{}", log_name(&arguments.log), sensor_name(arguments.sensor));
+    arguments.out.clone().unwrap_or_else(|| Path::new("out").join(name))
+}
+
+fn summary(arguments: &Map, survey: &Survey, mapper: &Mapper, seconds: f64) -> MapSummary {
+    let map = &mapper.map;
+    let known = map.grid().cells().filter(|cell| map.is_known(*cell)).count();
+    let skipped: &Skipped = &survey.skipped;
+    MapSummary {
+        world: log_name(&arguments.log),
+        sensor: sensor_name(arguments.sensor),
+        resolution: map.grid().resolution(),
+        frames: skipped.frames(),
+        skipped: skipped.total(),
+        standing: mapper.standing,
+        scans: mapper.scans,
+        jumps: mapper.jumps,
+        path_length_m: mapper.path_length,
+        cells: CellCounts { known, unknown: map.grid().len() - known },
+        share_entropy_above_0_65: share_uncertain(map),
+        seconds,
+        warning: (!skipped.is_empty()).then(|| skipped.to_string()),
+    }
+}
+
+/// The share of the known cells that are not pinned with an entropy above .65 nats.
+#[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
+fn share_uncertain(map: &CoverageMap) -> f64 {
+    let measured = map.grid().cells().filter(|cell| map.is_known(*cell) && !map.is_pinned(*cell));
+    let (mut all, mut above) = (0usize, 0usize);
+    for cell in measured {
+        all += 1;
+        above += usize::from(map.entropy(cell) > 0.65);
+    }
+    above as f64 / all.max(1) as f64
+}
+
+fn write(
+    folder: &OutputFolder,
+    mapper: &Mapper,
+    summary: &MapSummary,
+    explored: f64,
+) -> Result<()> {
+    let belief = folder.path("belief.bin");
+    std::fs::write(&belief, mapper.map.to_bytes()).map_err(about(&belief))?;
+    let likely = mapper.map.maximum_likelihood();
+    save_map_server(folder.partial(), "map", &likely, CoverageThresholds::default())?;
+    let pictures = MapPictures { mapper, summary, explored };
+    pictures.coverage().save(folder.path("coverage.png"))?;
+    pictures.entropy().save(folder.path("entropy.png"))?;
+    pictures.occupancy().save(folder.path("occupancy.png"))?;
+    // Last: whoever finds it finds all the others.
+    write_json(folder.path("summary.json"), summary)?;
+    Ok(())
+}
+
+fn report(arguments: &Map, summary: &MapSummary, remark: Option<&str>, written: &Path) {
+    let MapSummary { world, sensor, frames, standing, scans, jumps, .. } = summary;
+    say::line(format!("{world}, {sensor}: a map of {scans} scans"));
+    say::line(format!(
+        "  {frames} frames, {standing} of them nearer than {} m and {}° to the one used before",
+        arguments.every, arguments.every_degrees
+    ));
+    say::line(format!("  {:.1} m driven, {:.1} s", summary.path_length_m, summary.seconds));
+    if *jumps > 0 {
+        say::line(format!("  {jumps} jumps of more than 1 m, not taken for driven"));
+    }
+    say::line(format!(
+        "  cells: {} known, {} unknown; entropy above 0.65 nats in {:.1} % of the measured",
+        summary.cells.known,
+        summary.cells.unknown,
+        100.0 * summary.share_entropy_above_0_65
+    ));
+    for line in remark.into_iter().chain(summary.warning.as_deref()) {
+        say::line(format!("  {line}"));
+    }
+    say::line(format!("  {}", written.display()));
+}

@@ -1,0 +1,58 @@
+//! The pictures of the map of a log.
+
+use crate::map::MapSummary;
+use crate::mapper::Mapper;
+use crate::pictures::{draw_coverage, draw_entropy, draw_occupancy, draw_path};
+use covmap_io::Picture;
+use nalgebra::Point2;
+
+/// All that the pictures show.
+pub(crate) struct MapPictures<'a> {
+    pub(crate) mapper: &'a Mapper,
+    pub(crate) summary: &'a MapSummary,
+    /// ε: a cell with an entropy up to this does not fade \[nats\].
+    pub(crate) explored: f64,
+}
+
+impl MapPictures<'_> {
+    fn begin(&self, what: &str) -> Picture {
+        let MapSummary { world, sensor, resolution, scans, path_length_m, .. } = self.summary;
+        let mut picture = Picture::new(*self.mapper.map.grid());
+        picture
+            .title(&format!("{world}: {what}"))
+            .subtitle(&format!(
+                "{sensor}, r = {resolution} m: {scans} scans, {path_length_m:.1} m driven"
+            ))
+            .scale_bar();
+        picture
+    }
+
+    fn path(&self, picture: &mut Picture) {
+        if let (Some(first), Some(last)) = (self.mapper.first, self.mapper.last) {
+            let start = Point2::from(first.translation.vector);
+            let end = Point2::from(last.translation.vector);
+            let line = self.mapper.trail.line();
+            draw_path(picture, &line, start, (end, last.rotation.angle()));
+        }
+    }
+
+    pub(crate) fn coverage(&self) -> Picture {
+        let mut picture = self.begin("most likely coverage");
+        draw_coverage(&mut picture, &self.mapper.map, self.explored);
+        self.path(&mut picture);
+        picture
+    }
+
+    pub(crate) fn entropy(&self) -> Picture {
+        let mut picture = self.begin("entropy of the coverage");
+        draw_entropy(&mut picture, &self.mapper.map);
+        picture
+    }
+
+    pub(crate) fn occupancy(&self) -> Picture {
+        let mut picture = self.begin("log-odds occupancy grid of the same scans");
+        draw_occupancy(&mut picture, &self.mapper.occupancy);
+        self.path(&mut picture);
+        picture
+    }
+}
