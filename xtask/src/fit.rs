@@ -7,7 +7,8 @@ use crate::{input, say};
 use anyhow::{Result, bail};
 use covmap_explore::Config;
 use covmap_fit::{
-    Evaluation, Example, ExampleScore, FitSettings, Fitted, Profile, SearchSettings, fit, score,
+    ClassScore, Evaluation, Example, ExampleScore, FitSettings, Fitted, Profile, SearchSettings,
+    Weighting, fit, score,
 };
 use covmap_io::{OutputFolder, write_json, write_ron};
 use covmap_model::ModelParameters;
@@ -26,9 +27,10 @@ use std::process::ExitCode;
 struct Report<'a> {
     file: &'a Path,
     seed: u64,
+    weighting: Weighting,
     training: Compared,
     held_out: Vec<Compared>,
-    /// Difference of the mean log-likelihood per held-out example, after − before.
+    /// Difference of the objective for each held-out example, after − before.
     held_out_difference: Option<Paired>,
     before: &'a ModelParameters,
     after: &'a ModelParameters,
@@ -58,7 +60,8 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let (file, config, name) = FitFile::read(&arguments.file)?;
     let folder = OutputFolder::create(arguments.out.clone())?;
     let line = progress(arguments.quiet);
-    let examples = |sources: &[Source]| simulate(sources, arguments, (&config, &name), &line, &interrupt);
+    let examples =
+        |sources: &[Source]| simulate(sources, arguments, (&config, &name), &line, &interrupt);
     let (training, held_out) = (examples(&file.training)?, examples(&file.held_out)?);
     if interrupt.is_pressed() {
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
@@ -76,8 +79,9 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let report = Report {
         file: &arguments.file,
         seed: file.seed,
+        weighting: file.weighting,
         training: compare("training", &training)?,
-        held_out_difference: paired(&held_out),
+        held_out_difference: paired(&held_out, file.weighting),
         held_out,
         before: &config.model,
         after: &fitted.parameters,
@@ -94,9 +98,9 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
 
 fn progress(quiet: bool) -> ProgressBar {
     let watched = !quiet && std::io::stderr().is_terminal();
-    let target =
-        if watched { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-    ProgressBar::with_draw_target(None, target).with_style(indicatif::ProgressStyle::default_spinner())
+    let target = if watched { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
+    ProgressBar::with_draw_target(None, target)
+        .with_style(indicatif::ProgressStyle::default_spinner())
 }
 
 /// Explores the worlds of some examples, side by side.
@@ -125,23 +129,30 @@ fn search(
     interrupt: &Interrupt,
 ) -> Result<Fitted> {
     let settings = FitSettings {
+        weighting: file.weighting,
         axes: file.axes.clone(),
         starts: file.starts,
         search: SearchSettings { evaluations: file.evaluations, ..SearchSettings::default() },
     };
     let mut random = stream(file.seed, "fit", 0);
     let (mut count, mut best) = (0, f64::NEG_INFINITY);
-    let fitted = fit(training, &config.model, &settings, || uniform(&mut random), |evaluation| {
-        count += 1;
-        best = evaluation.log_likelihood.unwrap_or(best).max(best);
-        line.set_message(format!(
-            "search {} of {} · {count} evaluations · log-likelihood {best:.4} nats a cell",
-            evaluation.start + 1,
-            file.starts
-        ));
-        line.tick();
-        if interrupt.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-    });
+    let fitted = fit(
+        training,
+        &config.model,
+        &settings,
+        || uniform(&mut random),
+        |evaluation| {
+            count += 1;
+            best = evaluation.log_likelihood.unwrap_or(best).max(best);
+            line.set_message(format!(
+                "search {} of {} · {count} evaluations · log-likelihood {best:.4} nats a cell",
+                evaluation.start + 1,
+                file.starts
+            ));
+            line.tick();
+            if interrupt.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        },
+    );
     match fitted {
         Ok(fitted) => Ok(fitted),
         Err(error) => bail!("the fit cannot begin: {error}"),
@@ -149,9 +160,9 @@ fn search(
 }
 
 /// The paired differences of the held-out examples; `None` for fewer than two.
-fn paired(compared: &[Compared]) -> Option<Paired> {
-    let differences: Vec<f64> =
-        compared.iter().map(|c| c.after.all.log_likelihood - c.before.all.log_likelihood).collect();
+fn paired(compared: &[Compared], weighting: Weighting) -> Option<Paired> {
+    let of = |score| weighting.objective(score);
+    let differences: Vec<f64> = compared.iter().map(|c| of(&c.after) - of(&c.before)).collect();
     let n = differences.len();
     let count = f64::from(u32::try_from(n).ok()?);
     let mean = differences.iter().sum::<f64>() / count;
@@ -184,20 +195,23 @@ fn write(folder: &OutputFolder, config: &Config, report: &Report<'_>) -> Result<
 }
 
 fn tell(report: &Report<'_>, written: &Path) {
+    let change = |before: ClassScore, after: ClassScore| {
+        format!("{:.3} → {:.3}", before.log_likelihood, after.log_likelihood)
+    };
     let row = |compared: &Compared| {
         let (before, after) = (&compared.before, &compared.after);
         say::line(format!(
-            "  {:32} {:8.4} → {:8.4}   partial {:8.4} → {:8.4}   error {:.4} → {:.4}",
+            "  {:36} all {} · free {} · partial {} · solid {} · error {:.3} → {:.3}",
             compared.name,
-            before.all.log_likelihood,
-            after.all.log_likelihood,
-            before.partial.log_likelihood,
-            after.partial.log_likelihood,
+            change(before.all, after.all),
+            change(before.free, after.free),
+            change(before.partial, after.partial),
+            change(before.solid, after.solid),
             before.all.error,
             after.all.error
         ));
     };
-    say::line("mean log-likelihood of a cell [nats], before → after:");
+    say::line("mean log-likelihood [nats] and mean absolute error, before → after:");
     row(&report.training);
     report.held_out.iter().for_each(row);
     if let Some(Paired { n, mean, low, high }) = report.held_out_difference {

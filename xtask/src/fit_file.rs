@@ -3,7 +3,7 @@
 use crate::input::{self, about};
 use anyhow::{Result, bail};
 use covmap_explore::{Config, Limits, Mission, SimulatedRobot, Truth, explore};
-use covmap_fit::{Axis, Example};
+use covmap_fit::{Axis, Example, Weighting};
 use covmap_io::read_ron;
 use covmap_plan::Strategy;
 use covmap_sonar::SonarRing;
@@ -30,6 +30,8 @@ pub(crate) struct FitFile {
     pub(crate) starts: usize,
     /// The most evaluations of each.
     pub(crate) evaluations: usize,
+    /// What the likelihood is the mean of.
+    pub(crate) weighting: Weighting,
     /// The free parameters.
     pub(crate) axes: Vec<Axis>,
     /// What is fitted to.

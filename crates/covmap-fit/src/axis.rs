@@ -171,8 +171,18 @@ mod tests {
             Tempering, UsableRange,
         };
         let all = [
-            GammaBase, GammaPerCellDistance, GammaPerRange, SigmaOutBase, SigmaOutPerCellDistance,
-            SigmaOutPerRange, SigmaIn, Behind, HalfAngle, UsableRange, NoEchoRange, NoEchoGamma,
+            GammaBase,
+            GammaPerCellDistance,
+            GammaPerRange,
+            SigmaOutBase,
+            SigmaOutPerCellDistance,
+            SigmaOutPerRange,
+            SigmaIn,
+            Behind,
+            HalfAngle,
+            UsableRange,
+            NoEchoRange,
+            NoEchoGamma,
             Tempering,
         ];
         let mut parameters = ModelParameters::b21r();

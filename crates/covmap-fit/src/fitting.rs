@@ -4,12 +4,25 @@ use crate::search::{SearchSettings, maximise};
 use crate::{Axis, AxisError, ClassScore, Example, ExampleScore, Parameter};
 use covmap_model::{ModelError, ModelParameters};
 use rayon::prelude::*;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
+
+/// What the objective is the mean of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Weighting {
+    /// All cells alike.
+    Cells,
+    /// The classes alike: cells that are free, partly covered, and solid, as far as there are
+    /// any. Indoors most cells are free, and few are solid and in sight: alike, cells let a fit
+    /// buy a better likelihood of the others with walls that are not there.
+    Classes,
+}
 
 /// How the parameters are sought.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitSettings {
+    /// What the likelihood is the mean of.
+    pub weighting: Weighting,
     /// The free parameters. All others stay as they are.
     pub axes: Vec<Axis>,
     /// How many local searches: the first from the given parameters, the others from places
@@ -26,8 +39,8 @@ pub struct Evaluation {
     pub start: usize,
     /// The values of the free parameters, in the order of the axes.
     pub values: Vec<f64>,
-    /// Mean log-likelihood of a cell of the examples \[nats\]; `None` where the parameters
-    /// make no model.
+    /// The objective: mean log-likelihood by the settings' weighting \[nats\]; `None` where
+    /// the parameters make no model.
     pub log_likelihood: Option<f64>,
 }
 
@@ -45,7 +58,7 @@ pub struct Profile {
 pub struct Fitted {
     /// The best parameters.
     pub parameters: ModelParameters,
-    /// Their mean log-likelihood of a cell \[nats\].
+    /// Their objective \[nats\].
     pub log_likelihood: f64,
     /// Every evaluation, in order.
     pub path: Vec<Evaluation>,
@@ -67,8 +80,25 @@ pub enum FitError {
     Begin(ModelError),
 }
 
+impl Weighting {
+    /// The mean log-likelihood \[nats\].
+    pub fn objective(self, score: &ExampleScore) -> f64 {
+        match self {
+            Self::Cells => score.all.log_likelihood,
+            Self::Classes => {
+                let classes = [score.free, score.partial, score.solid];
+                let there = || classes.iter().filter(|class| class.cells > 0);
+                let sum: f64 = there().map(|class| class.log_likelihood).sum();
+                #[allow(clippy::cast_precision_loss, reason = "at most 3")]
+                let mean = sum / there().count().max(1) as f64;
+                mean
+            }
+        }
+    }
+}
+
 /// The points of a profile.
-const PROFILE_POINTS: u32 = 15;
+const PROFILE_POINTS: u32 = 11;
 /// A start drawn at random makes no model more often than not: so many are tried.
 const DRAWS: usize = 1000;
 
@@ -100,7 +130,9 @@ pub fn fit(
         axes.iter().zip(place).for_each(|(axis, place)| axis.set(&mut parameters, *place));
         parameters
     };
-    let value = |place: &[f64]| Some(score(examples, &parameters(place)).ok()?.all.log_likelihood);
+    let value = |place: &[f64]| {
+        Some(settings.weighting.objective(&score(examples, &parameters(place)).ok()?))
+    };
     let given: Vec<f64> = axes.iter().map(|axis| axis.place(begin)).collect();
     score(examples, &parameters(&given)).map_err(FitError::Begin)?;
 

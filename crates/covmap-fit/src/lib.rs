@@ -28,5 +28,5 @@ mod search;
 
 pub use axis::{Axis, AxisError, Parameter};
 pub use example::{ClassScore, Example, ExampleScore};
-pub use fitting::{Evaluation, FitError, FitSettings, Fitted, Profile, fit, score};
+pub use fitting::{Evaluation, FitError, FitSettings, Fitted, Profile, Weighting, fit, score};
 pub use search::{SearchSettings, Step, maximise};

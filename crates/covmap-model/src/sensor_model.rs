@@ -142,7 +142,12 @@ impl SensorModel {
         let mut sum = 0.0;
         for (bin, o) in out.iter_mut().enumerate() {
             let density = gamma + normal(mu, sigma, bin_coverage(bin, p.bins));
-            *o = if p.tempering < 1.0 { libm::pow(density, p.tempering) } else { density };
+            // exp ∘ log is four times as fast as libm's pow, which would be most of integrating.
+            *o = if p.tempering < 1.0 {
+                libm::exp(p.tempering * libm::log(density))
+            } else {
+                density
+            };
             sum += *o;
         }
         out.iter_mut().for_each(|o| *o /= sum);
