@@ -99,6 +99,16 @@ Example:
   cargo xtask model --range 1.0 --out model.csv
 ";
 
+const SURVEY_EXAMPLES: &str = "\
+The walls (each with the front that the laser saw, and a thickness), the posts, and a list of
+solids that is empty: correct them by hand. A picture beside the file shows them with all echoes:
+walls red on black, posts orange, what nothing explains and is therefore not scored pink, what no
+laser saw blue.
+
+Example:
+  cargo xtask survey robot/test1 --poses robot/test1_poses.txt --out truth.ron
+";
+
 const FIT_EXAMPLES: &str = "\
 FIT.ron names a configuration, examples to fit to, examples held out, and the free parameters
 with their bounds; see configs/fit/*.ron. The robot explores each example's world with the given
@@ -148,6 +158,9 @@ pub(crate) enum Command {
     /// Fits the sensor model to the truth by local search, and writes a configuration.
     #[command(after_help = FIT_EXAMPLES)]
     Fit(Fit),
+    /// Finds the walls of a building in the laser scans of a log: the truth to score maps with.
+    #[command(after_help = SURVEY_EXAMPLES)]
+    Survey(Survey),
 }
 
 #[derive(Debug, Args)]
@@ -275,6 +288,21 @@ pub(crate) struct Fit {
     pub(crate) file: PathBuf,
     /// Where the results go
     #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Survey {
+    /// A CARMEN log, or a folder with od.txt and laser.txt
+    pub(crate) log: PathBuf,
+    /// Poses instead of the log's: lines `t_ms x_m y_m theta_rad` in the order of time
+    #[arg(long, value_name = "FILE")]
+    pub(crate) poses: Option<PathBuf>,
+    /// The file that is written; the picture has its name with .png
+    #[arg(long, value_name = "FILE.ron")]
     pub(crate) out: PathBuf,
     /// Print nothing but errors
     #[arg(long)]

@@ -113,7 +113,7 @@ fn simulate(
 ) -> Result<Vec<Example>> {
     let example = |source: &Source| {
         source.example(&arguments.file, (config.0, config.1), &mut || {
-            line.set_message(format!("exploring {}", source.scenario.display()));
+            line.set_message(format!("reading {}", source.file().display()));
             line.tick();
             if interrupt.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })

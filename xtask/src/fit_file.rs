@@ -1,6 +1,7 @@
 //! The file that says what is fitted to what, and the examples that it describes.
 
 use crate::input::{self, about};
+use crate::recorded::Recorded;
 use anyhow::{Result, bail};
 use covmap_explore::{Config, Limits, Mission, SimulatedRobot, Truth, explore};
 use covmap_fit::{Axis, Example, Weighting};
@@ -40,10 +41,19 @@ pub(crate) struct FitFile {
     pub(crate) held_out: Vec<Source>,
 }
 
-/// Where an example comes from: a simulated exploration.
+/// Where an example comes from.
+#[derive(Debug, Deserialize)]
+pub(crate) enum Source {
+    /// A simulated exploration.
+    Simulated(Simulated),
+    /// The log of a robot, and a survey of where it was.
+    Recorded(Recorded),
+}
+
+/// A simulated exploration.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Source {
+pub(crate) struct Simulated {
     /// The scenario.
     pub(crate) scenario: PathBuf,
     /// By how much it is turned \[rad\].
@@ -83,8 +93,31 @@ pub(crate) fn beside(path: &Path, named: &Path) -> PathBuf {
 }
 
 impl Source {
-    /// Lets the robot explore, and takes what it measured with the truth.
+    /// The file that it is made from.
+    pub(crate) fn file(&self) -> &Path {
+        match self {
+            Self::Simulated(source) => &source.scenario,
+            Self::Recorded(source) => &source.log,
+        }
+    }
+
+    /// The scans and the truth.
     pub(crate) fn example(
+        &self,
+        path: &Path,
+        config: (&Config, &Path),
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Example> {
+        match self {
+            Self::Simulated(source) => source.example(path, config, watch),
+            Self::Recorded(source) => source.example(path, config.0),
+        }
+    }
+}
+
+impl Simulated {
+    /// Lets the robot explore, and takes what it measured with the truth.
+    fn example(
         &self,
         path: &Path,
         (config, name): (&Config, &Path),

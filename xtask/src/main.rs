@@ -20,9 +20,11 @@ mod mapper;
 mod model;
 mod pictures;
 mod progress;
+mod recorded;
 mod replay;
 mod results;
 mod say;
+mod survey;
 mod trace_file;
 mod trail;
 mod truth;
@@ -43,6 +45,7 @@ fn main() -> ExitCode {
         Command::Truth(arguments) => truth::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
+        Command::Survey(arguments) => survey::run(&arguments),
     };
     done.unwrap_or_else(|error| {
         say::error(&error);

@@ -29,7 +29,7 @@ pub(crate) struct Stride {
 
 impl Stride {
     /// Whether a frame at `pose` is used after the last one used.
-    fn takes(&self, last: Option<&Isometry2<f64>>, pose: &Isometry2<f64>) -> bool {
+    pub(crate) fn takes(&self, last: Option<&Isometry2<f64>>, pose: &Isometry2<f64>) -> bool {
         last.is_none_or(|last| {
             let moved = (pose.translation.vector - last.translation.vector).norm();
             moved >= self.every || last.rotation.angle_to(&pose.rotation).abs() >= self.turn

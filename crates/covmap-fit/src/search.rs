@@ -34,7 +34,9 @@ pub struct Step {
 /// # Algorithm
 /// Pattern search with a step for each axis. Axis by axis a step is tried to one side, then
 /// to the other. A step that improves is taken, and the next one along this axis is half as
-/// long again; if neither side improves, it is half as long. This needs no gradient, keeps
+/// long again; if neither side improves, it is half as long. After all axes, the way of the
+/// whole round is gone once more, as long as that improves (Hooke and Jeeves, 1961): parameters
+/// that can stand in for each other make narrow ridges, along no axis. This needs no gradient, keeps
 /// to bounds and to constraints that are only known by asking, and does not mind that
 /// parameters such as the distance behind act in steps, cell by cell: that is why it stands
 /// here instead of a simplex or a quasi-Newton method.
@@ -60,6 +62,7 @@ pub fn maximise(
     // Signed: the side that is tried first is the one that improved last.
     let mut steps = vec![settings.first_step; start.len()];
     while steps.iter().any(|step| step.abs() >= settings.last_step) && left > 0 {
+        let before = best.clone();
         for axis in 0..steps.len() {
             if steps[axis].abs() < settings.last_step {
                 continue;
@@ -79,6 +82,15 @@ pub fn maximise(
                 }
                 None => 0.5 * steps[axis],
             };
+        }
+        let round: Vec<f64> = best.iter().zip(&before).map(|(to, from)| to - from).collect();
+        while left > 0 && round.iter().any(|way| way.abs() > 1e-12) {
+            let place: Vec<f64> =
+                best.iter().zip(&round).map(|(at, way)| (at + way).clamp(0.0, 1.0)).collect();
+            match evaluate(&place, &mut left).filter(|value| *value > highest) {
+                Some(value) => (best, highest) = (place, value),
+                None => break,
+            }
         }
     }
     Some((best, highest))

@@ -1,0 +1,140 @@
+//! What a robot recorded: laser scans for a survey, and examples for a fit.
+
+use crate::fit_file::beside;
+use crate::input::{self, about};
+use crate::mapper::Stride;
+use anyhow::{Result, bail};
+use covmap::{CoverageMap, Grid, Raster};
+use covmap_explore::Config;
+use covmap_fit::Example;
+use covmap_io::log::{LogOptions, LogReader, Sensor, Skipped};
+use covmap_io::read_ron;
+use covmap_model::integrate_body;
+use covmap_sonar::{Scan, SonarRing};
+use covmap_world::survey::{Survey, SurveyParameters};
+use covmap_world::{Surface, World};
+use nalgebra::{Point2, Vector2};
+use serde::Deserialize;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// A coverage of at least this hides what is behind.
+const OPAQUE: f64 = 0.5;
+
+/// The log of a robot, and a survey of where it was.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Recorded {
+    /// The log, with sonar and laser.
+    pub(crate) log: PathBuf,
+    /// The file of its true poses; empty for those of the log.
+    pub(crate) poses: PathBuf,
+    /// The survey.
+    pub(crate) truth: PathBuf,
+    /// A frame is used if the robot moved so far since the last one \[m\] …
+    pub(crate) every: f64,
+    /// … or turned by so much \[rad\].
+    pub(crate) every_angle: f64,
+}
+
+/// All scans of one sensor of a log.
+pub(crate) struct Frames {
+    pub(crate) scans: Vec<(Arc<SonarRing>, Scan)>,
+    pub(crate) skipped: Skipped,
+}
+
+/// Reads all scans of a log; `ring` stands in for what the log does not say.
+pub(crate) fn frames(
+    log: &Path,
+    poses: Option<&Path>,
+    sensor: Sensor,
+    ring: SonarRing,
+) -> Result<Frames> {
+    let options = LogOptions { sensor, ring, poses: poses.map(Path::to_path_buf) };
+    let mut reader = LogReader::open(log, &options)?;
+    let mut scans = Vec::new();
+    for frame in &mut reader {
+        let frame = frame?;
+        scans.push((frame.ring, frame.scan));
+    }
+    if scans.is_empty() {
+        bail!("{}: holds no scan", log.display());
+    }
+    Ok(Frames { scans, skipped: reader.skipped().clone() })
+}
+
+impl Recorded {
+    /// The sonar's scans, and the surveyed coverage of the cells that count: seen by the laser;
+    /// in sight of the robot within the usable range, or the first solid behind them; not
+    /// under its body.
+    pub(crate) fn example(&self, path: &Path, config: &Config) -> Result<Example> {
+        if !(self.every >= 0.0 && self.every_angle >= 0.0) {
+            bail!("{}: every and every_angle must not be negative", path.display());
+        }
+        let (log, truth) = (beside(path, &self.log), beside(path, &self.truth));
+        let poses = (!self.poses.as_os_str().is_empty()).then(|| beside(path, &self.poses));
+        let (ring, model) = config.build()?;
+        let sonar = frames(&log, poses.as_deref(), Sensor::Sonar, ring.clone())?;
+        let ring = (*sonar.scans[0].0).clone();
+        let scans = self.used(sonar.scans);
+
+        let around = Vector2::repeat(model.max_reach() + 1.0);
+        let first = Point2::from(scans[0].pose.translation.vector);
+        let places = scans.iter().map(|scan| Point2::from(scan.pose.translation.vector));
+        let (low, high) =
+            places.clone().fold((first, first), |(low, high), at| (low.inf(&at), high.sup(&at)));
+        let r = config.resolution;
+        let corner = (low - around).map(|v| (v / r).floor() * r);
+        let size = high + around - corner;
+        let grid = Grid::covering(corner, size, r, 0).map_err(about(&log))?;
+        input::check_size(&grid, config).map_err(about(&log))?;
+
+        let survey: Survey = read_ron(&truth)?;
+        let coverage = survey.coverage(&grid).map_err(about(&truth))?;
+        let laser = frames(&log, poses.as_deref(), Sensor::Laser, ring.clone())?;
+        let beams = laser.scans.iter().map(|(ring, scan)| (&**ring, scan));
+        let seen = survey.seen(&grid, beams, &SurveyParameters::indoor()).map_err(about(&truth))?;
+        let counts = counted(config, &coverage, &seen, places)?;
+        let cells = grid.cells().filter(|cell| counts.get(*cell) == Some(&true));
+        let with_truth = |cell| (cell, coverage.get(cell).copied().unwrap_or(0.0));
+        let name = log.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Example { name, ring, scans, grid, truth: cells.map(with_truth).collect() })
+    }
+
+    /// Standing still is no evidence.
+    fn used(&self, frames: Vec<(Arc<SonarRing>, Scan)>) -> Vec<Scan> {
+        let stride = Stride { every: self.every, turn: self.every_angle };
+        let mut used: Vec<Scan> = Vec::new();
+        for (_, scan) in frames {
+            if stride.takes(used.last().map(|last| &last.pose), &scan.pose) {
+                used.push(scan);
+            }
+        }
+        used
+    }
+}
+
+/// Which cells count.
+fn counted(
+    config: &Config,
+    coverage: &Raster<f64>,
+    seen: &Raster<bool>,
+    places: impl Iterator<Item = Point2<f64>>,
+) -> Result<Raster<bool>> {
+    let grid = *coverage.grid();
+    let solid = Raster::from_fn(grid, |cell| coverage.get(cell).is_some_and(|c| *c >= OPAQUE));
+    let world = World::from_raster("survey", &solid, Surface::Rough)?;
+    let mut from = Raster::filled(grid, false);
+    let mut body = CoverageMap::new(grid, config.model.bins)?;
+    for at in places {
+        integrate_body(&mut body, at, at, config.robot.radius);
+        if let Some(here) = grid.cell_at(at).and_then(|cell| from.get_mut(cell)) {
+            *here = true;
+        }
+    }
+    let sight = world.cells_seen(&grid, coverage, &from, config.model.usable_range);
+    Ok(Raster::from_fn(grid, |cell| {
+        let is = |raster: &Raster<bool>| raster.get(cell) == Some(&true);
+        is(seen) && !body.is_pinned(cell) && (is(&sight.in_sight) || is(&sight.first_solid))
+    }))
+}
