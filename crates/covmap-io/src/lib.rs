@@ -1,7 +1,7 @@
-//! Files and pictures: RON, JSON lines, the maps of ROS, and PNG pictures of rasters.
+//! Files and pictures: RON, JSON lines, the maps of ROS, pictures of rasters, and charts.
 //!
-//! Nothing of Stachniss & Burgard (2003) is in here: [`Picture`] draws, [`OutputFolder`] holds
-//! results that are whole, and [`FileError`] says in one sentence what is wrong with a file.
+//! Nothing of Stachniss & Burgard (2003) is in here: [`Picture`] and [`Chart`] draw,
+//! [`OutputFolder`] holds whole results, [`FileError`] says what is wrong with a file.
 //!
 //! This crate knows nothing of worlds, models and planners: it reads what serde can.
 //!
@@ -10,16 +10,15 @@
 //!
 //! ```no_run
 //! use covmap_io::{OutputFolder, Picture, Rgb, load_map_server};
-//!
 //! let building = load_map_server("maps/building.yaml")?;
 //! let results = OutputFolder::create("out/building")?;
 //! Picture::new(building.grid)
 //!     .cells(&building.solid(), |solid| if *solid { Rgb::INK } else { Rgb::WHITE })
-//!     .scale_bar()
 //!     .save(results.path("truth.png"))?;
 //! results.finish()?;
 //! # Ok::<(), covmap_io::FileError>(())
 //! ```
+mod chart;
 mod error;
 mod json;
 mod json_lines;
@@ -29,6 +28,7 @@ mod pgm;
 mod picture;
 mod read;
 mod ron_file;
+pub use chart::{Chart, ChartAxis, ChartPoint, Figure, HeatMap, Panel, Series};
 pub use error::FileError;
 pub use json::{read_json, write_json};
 pub use json_lines::{JsonLines, JsonLinesReader, read_json_lines};
