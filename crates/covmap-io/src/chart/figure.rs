@@ -31,12 +31,14 @@ impl Figure {
         let (panel_width, frame_height, text) = sizes(self.panels.len(), columns);
         let inner = columns as f32 * (panel_width + GUTTER[0]) - GUTTER[0];
         let heading = Heading::new((&self.title, 20.0), (&self.subtitle, 13.0), inner);
+        // Columns differ a little in width, so that their frames do not.
+        let text_width = if columns > 1 { 0.9 * panel_width } else { panel_width };
         let shared = self.shared_series();
         let own_legend = shared.is_none();
         let panels: Vec<Prepared<'_>> = self
             .panels
             .iter()
-            .map(|panel| panel.prepare(text, panel_width, frame_height, own_legend))
+            .map(|panel| panel.prepare(text, text_width, frame_height, own_legend))
             .collect();
 
         let mut scene = Scene {
@@ -50,14 +52,15 @@ impl Figure {
         let mut y = MARGIN + if above > 0.0 { (above + 14.0).ceil() } else { 0.0 };
         let wide = (0..columns).map(|column| widest(panels.iter().skip(column).step_by(columns)));
         let wide: Vec<Margins> = wide.collect();
+        let taken: f32 = wide.iter().map(|margins| margins.left + margins.right).sum();
+        let frame_width = (panel_width - taken / columns as f32).max(40.0).floor();
+        let size = [frame_width, frame_height];
         for row in panels.chunks(columns) {
             let high = widest(row.iter());
-            for (column, panel) in row.iter().enumerate() {
-                let Margins { left, right, .. } = wide[column];
-                let margins = Margins { left, right, ..high };
-                let size = [(panel_width - left - right).max(40.0), frame_height];
-                let x = MARGIN + column as f32 * (panel_width + GUTTER[0]);
-                panel.draw(&mut scene, [x, y], margins, size);
+            let mut x = MARGIN;
+            for (panel, Margins { left, right, .. }) in row.iter().zip(wide.iter().copied()) {
+                panel.draw(&mut scene, [x, y], Margins { left, right, ..high }, size);
+                x += left + frame_width + right + GUTTER[0];
             }
             y += high.top + frame_height + high.bottom + GUTTER[1];
         }

@@ -220,10 +220,10 @@ impl Prepared<'_> {
         }
         let (x, y) = self.panel.axes();
         let below = at[1] + size[1] + REACH_BELOW;
-        let name = shorten(&x.label, LABEL_SIZE, size[0] + margins.left);
+        let name = shorten(&x.label, LABEL_SIZE, size[0] + 24.0);
         let middle = at[0] + size[0] / 2.0;
         scene.text(&name, LABEL_SIZE, [middle, below + 17.0], Anchor::Middle, Rgb::INK);
-        let name = shorten(&y.label, LABEL_SIZE, size[1] + 20.0);
+        let name = shorten(&y.label, LABEL_SIZE, size[1] + 12.0);
         let beside = at[0] - reach(&self.y_ticks) - 10.0;
         scene.turned_text(&name, LABEL_SIZE, [beside, at[1] + size[1] / 2.0], Rgb::INK);
         let under = if x.label.trim().is_empty() { 4.0 } else { LABEL_ROW };
@@ -231,7 +231,7 @@ impl Prepared<'_> {
     }
 
     fn draw_value_name(&self, scene: &mut Scene, area: &Area, map: &HeatMap, ticks: &[Tick]) {
-        let name = shorten(&map.value.label, LABEL_SIZE, area.size[1] + 20.0);
+        let name = shorten(&map.value.label, LABEL_SIZE, area.size[1] + 12.0);
         let x = area.at[0] + area.size[0] + bar_reach(ticks) + 18.0;
         scene.turned_text(&name, LABEL_SIZE, [x, area.at[1] + area.size[1] / 2.0], Rgb::INK);
     }

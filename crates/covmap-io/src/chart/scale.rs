@@ -57,7 +57,7 @@ impl Scale {
     /// Gives an axis on which all values are the same, or nearly so, a length.
     fn widen(&mut self) {
         if self.logarithmic {
-            if self.to / self.from < 1.0 + 1e-6 {
+            if self.decades() < 1e-6 {
                 (self.from, self.to) = (self.from / 1.5, self.to * 1.5);
             }
             return;
@@ -75,11 +75,10 @@ impl Scale {
     /// Leaves white at the ends, but not beyond zero where no value is.
     fn pad(&mut self, low: bool, high: bool) {
         let (from, to) = (self.from, self.to);
-        let ratio = || libm::pow(to / from, PADDING);
         if self.logarithmic {
-            let ratio = if to / from < LARGEST { ratio() } else { 1.0 };
-            self.from = if low { from / ratio } else { from };
-            self.to = if high { to * ratio } else { to };
+            let ratio = libm::pow(10.0, PADDING * self.decades());
+            self.from = if low { (from / ratio).max(SMALLEST) } else { from };
+            self.to = if high { (to * ratio).min(LARGEST) } else { to };
             return;
         }
         let by = PADDING * (to - from);
@@ -96,7 +95,7 @@ impl Scale {
     pub(super) fn share(&self, value: f64) -> Option<f64> {
         is_drawable(value, self.logarithmic).then(|| {
             let share = if self.logarithmic {
-                libm::log10(value / self.from) / libm::log10(self.to / self.from)
+                (libm::log10(value) - libm::log10(self.from)) / self.decades()
             } else {
                 (value - self.from) / (self.to - self.from)
             };
@@ -220,7 +219,7 @@ fn with_minus(number: &str) -> String {
 
 /// A number as short as it is exact to its steps, among numbers up to a size.
 fn number(value: f64, step: f64, size: f64) -> String {
-    if size < 1e7 && step > 1e-6 {
+    if (1e-4..1e7).contains(&size) && step > 1e-9 {
         return short(value, step);
     }
     if value.abs() < step / 2.0 {
@@ -261,6 +260,8 @@ mod tests {
         assert_eq!(labels(0.0, 2e8, false), ["0", "5e7", "1e8", "1.5e8", "2e8"]);
         assert_eq!(labels(0.0, 4e-9, false), ["0", "1e−9", "2e−9", "3e−9", "4e−9"]);
         assert_eq!(labels(1e6, 1e6 + 1.0, false), ["1000000.0", "1000000.5", "1000001.0"]);
+        assert_eq!(labels(1.0, 1.0 + 2e-7, false)[1], "1.00000005");
+        assert_eq!(labels(1e-200, 1e200, true)[0], "1e−200");
         assert_eq!(labels(0.001, 10.0, true), ["0.001", "0.01", "0.1", "1", "10"]);
         assert_eq!(labels(1.0, 20.0, true), ["1", "2", "5", "10", "20"]);
         assert_eq!(labels(1e-9, 1e9, true), ["1e−9", "1e−6", "0.001", "1", "1000", "1e6", "1e9"]);
