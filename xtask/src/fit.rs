@@ -1,6 +1,7 @@
 //! `fit`: the sensor model is fitted to the truth.
 
 use crate::arguments::Fit;
+use crate::fit_charts;
 use crate::fit_file::{FitFile, Source};
 use crate::interrupt::{self, Interrupt};
 use crate::{input, say};
@@ -190,6 +191,11 @@ fn write(folder: &OutputFolder, config: &Config, report: &Report<'_>) -> Result<
         )),
     );
     write_ron(folder.path("config.ron"), &fitted, Some(&comment))?;
+    let chart = |name: &str, kind: &str| folder.path(&format!("{name}.{kind}"));
+    fit_charts::search(report.path).save(chart("search", "svg"), chart("search", "png"))?;
+    fit_charts::profiles(report.profiles, report.after)
+        .save(chart("profiles", "svg"), chart("profiles", "png"))?;
+    // Last: whoever finds it finds all the others.
     write_json(folder.path("fit.json"), report)?;
     Ok(())
 }

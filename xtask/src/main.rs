@@ -10,6 +10,7 @@ mod explain;
 mod explain_picture;
 mod explore;
 mod fit;
+mod fit_charts;
 mod fit_file;
 mod input;
 mod interrupt;

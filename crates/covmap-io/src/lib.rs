@@ -1,7 +1,7 @@
-//! Files and pictures: RON, JSON lines, the maps of ROS, logs, and PNG pictures of rasters.
+//! Files: RON, JSON lines, the maps of ROS, logs, pictures of rasters, and charts.
 //!
-//! Nothing of Stachniss & Burgard (2003) is in here: [`Picture`] draws, [`OutputFolder`] holds
-//! what is whole, [`log::LogReader`] reads scans, [`FileError`] says what is wrong with a file.
+//! Nothing of Stachniss & Burgard (2003) is in here: [`Picture`] and [`Chart`] draw,
+//! [`log::LogReader`] reads scans, [`OutputFolder`] holds whole results.
 //!
 //! This crate knows nothing of worlds, models and planners: it reads what serde can.
 //!
@@ -10,7 +10,6 @@
 //!
 //! ```no_run
 //! use covmap_io::{OutputFolder, Picture, Rgb, load_map_server};
-//!
 //! let building = load_map_server("maps/building.yaml")?;
 //! let results = OutputFolder::create("out/building")?;
 //! Picture::new(building.grid)
@@ -19,6 +18,7 @@
 //! results.finish()?;
 //! # Ok::<(), covmap_io::FileError>(())
 //! ```
+mod chart;
 mod error;
 mod json;
 mod json_lines;
@@ -29,6 +29,7 @@ mod pgm;
 mod picture;
 mod read;
 mod ron_file;
+pub use chart::{Chart, ChartAxis, ChartPoint, Figure, HeatMap, Panel, Series};
 pub use error::FileError;
 pub use json::{read_json, write_json};
 pub use json_lines::{JsonLines, JsonLinesReader, read_json_lines};

@@ -3,14 +3,15 @@
 use super::Marker;
 use super::color::Rgb;
 use super::text::text_path;
+use crate::FileError;
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke,
-    Transform,
+    StrokeDash, Transform,
 };
 
 /// An image that is drawn on; points in pixels from the top left.
 #[derive(Debug, Clone)]
-pub(super) struct Canvas(Pixmap);
+pub(crate) struct Canvas(Pixmap);
 
 fn paint(color: Rgb, opacity: f32) -> Paint<'static> {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
@@ -22,28 +23,45 @@ fn paint(color: Rgb, opacity: f32) -> Paint<'static> {
 
 impl Canvas {
     /// A canvas of one colour. Sides of 0 count as 1.
-    pub(super) fn new(width: u32, height: u32, color: Rgb) -> Self {
+    pub(crate) fn new(width: u32, height: u32, color: Rgb) -> Self {
         let pixmap = Pixmap::new(width.max(1), height.max(1));
         let mut pixmap = pixmap.expect("a few thousand pixels a side");
         pixmap.fill(tiny_skia::Color::from_rgba8(color.0, color.1, color.2, 255));
         Self(pixmap)
     }
 
-    pub(super) fn width(&self) -> u32 {
+    pub(crate) fn width(&self) -> u32 {
         self.0.width()
     }
 
-    pub(super) fn height(&self) -> u32 {
+    pub(crate) fn height(&self) -> u32 {
         self.0.height()
     }
 
     /// The pixels row by row from the top: red, green, blue.
-    pub(super) fn rgb(&self) -> Vec<u8> {
+    pub(crate) fn rgb(&self) -> Vec<u8> {
         self.0.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
     }
 
+    /// Writes the image as a PNG.
+    pub(crate) fn save(&self, path: &std::path::Path) -> Result<(), FileError> {
+        let mut bytes = Vec::new();
+        let mut encoder = png::Encoder::new(&mut bytes, self.width(), self.height());
+        encoder.set_color(png::ColorType::Rgb);
+        encoder.set_depth(png::BitDepth::Eight);
+        let written = encoder.write_header().and_then(|mut writer| {
+            writer.write_image_data(&self.rgb())?;
+            writer.finish()
+        });
+        written.map_err(|error| FileError::Unwritable {
+            path: path.to_path_buf(),
+            message: error.to_string(),
+        })?;
+        crate::read::write_bytes(path, &bytes)
+    }
+
     /// Colours a rectangle of whole pixels, which must lie in the canvas.
-    pub(super) fn block(&mut self, x: usize, y: usize, width: usize, height: usize, color: Rgb) {
+    pub(crate) fn block(&mut self, x: usize, y: usize, width: usize, height: usize, color: Rgb) {
         let row = self.0.width() as usize * 4;
         let pixels = self.0.data_mut();
         for y in y..y + height {
@@ -54,19 +72,21 @@ impl Canvas {
     }
 
     /// Draws another canvas with its top left corner at a pixel.
-    pub(super) fn paste(&mut self, x: i32, y: i32, other: &Canvas) {
+    pub(crate) fn paste(&mut self, x: i32, y: i32, other: &Canvas) {
         let paint = PixmapPaint::default();
         self.0.draw_pixmap(x, y, other.0.as_ref(), &paint, Transform::identity(), None);
     }
 
-    fn fill(&mut self, path: Option<Path>, color: Rgb) {
+    /// Fills an outline.
+    pub(crate) fn fill(&mut self, path: Option<Path>, color: Rgb) {
         if let Some(path) = path {
             let paint = paint(color, 1.0);
             self.0.fill_path(&path, &paint, FillRule::Winding, Transform::identity(), None);
         }
     }
 
-    fn stroke(&mut self, path: Option<Path>, color: Rgb, width: f32, opacity: f32) {
+    /// Draws along a path.
+    pub(crate) fn stroke(&mut self, path: Option<Path>, color: Rgb, width: f32, opacity: f32) {
         if let Some(path) = path {
             let (line_cap, line_join) = (LineCap::Round, LineJoin::Round);
             let stroke = Stroke { width, line_cap, line_join, ..Stroke::default() };
@@ -74,21 +94,30 @@ impl Canvas {
         }
     }
 
+    /// Draws along a path with dashes: the lengths drawn and left out in turn \[pixels\].
+    pub(crate) fn dash(&mut self, path: Option<Path>, color: Rgb, width: f32, dashes: &[f32]) {
+        if let Some(path) = path {
+            let dash = StrokeDash::new(dashes.to_vec(), 0.0);
+            let stroke = Stroke { width, line_join: LineJoin::Round, dash, ..Stroke::default() };
+            self.0.stroke_path(&path, &paint(color, 1.0), &stroke, Transform::identity(), None);
+        }
+    }
+
     /// Fills a rectangle.
-    pub(super) fn rectangle(&mut self, x: f32, y: f32, width: f32, height: f32, color: Rgb) {
+    pub(crate) fn rectangle(&mut self, x: f32, y: f32, width: f32, height: f32, color: Rgb) {
         let rect = Rect::from_xywh(x, y, width, height);
         self.fill(rect.map(PathBuilder::from_rect), color);
     }
 
     /// Draws the outline of a rectangle.
-    pub(super) fn frame(&mut self, x: f32, y: f32, width: f32, height: f32, color: Rgb) {
+    pub(crate) fn frame(&mut self, x: f32, y: f32, width: f32, height: f32, color: Rgb) {
         let rect = Rect::from_xywh(x, y, width, height);
         self.stroke(rect.map(PathBuilder::from_rect), color, 1.0, 1.0);
     }
 
     /// Draws a line through points; a single point is a dot. Points that are not finite
     /// break it.
-    pub(super) fn polyline(&mut self, points: &[[f32; 2]], color: Rgb, width: f32, opacity: f32) {
+    pub(crate) fn polyline(&mut self, points: &[[f32; 2]], color: Rgb, width: f32, opacity: f32) {
         let mut path = PathBuilder::new();
         for piece in points.split(|p| !p.iter().all(|v| v.is_finite())) {
             let Some(([x, y], rest)) = piece.split_first() else { continue };
@@ -103,7 +132,7 @@ impl Canvas {
     }
 
     /// Draws a marker of a diameter, with a light rim, so that it is seen on any ground.
-    pub(super) fn marker(&mut self, [x, y]: [f32; 2], marker: Marker, color: Rgb, size: f32) {
+    pub(crate) fn marker(&mut self, [x, y]: [f32; 2], marker: Marker, color: Rgb, size: f32) {
         let radius = size / 2.0;
         let line = (size / 6.0).max(2.0);
         let rim = (size / 8.0).clamp(1.5, 3.0);
@@ -139,7 +168,7 @@ impl Canvas {
     }
 
     /// Writes text from `x` on; with a halo if it stands on a picture.
-    pub(super) fn text(
+    pub(crate) fn text(
         &mut self,
         text: &str,
         size: f32,

@@ -28,14 +28,14 @@ pub(super) struct Furniture<'a> {
 }
 
 /// The step of the round lengths 1, 2, 5, 10, 20, … that is the largest up to `most`.
-fn round_down(most: f64) -> f64 {
+pub(crate) fn round_down(most: f64) -> f64 {
     let decade = libm::pow(10.0, libm::floor(libm::log10(most)));
     let factor = [5.0, 2.0].into_iter().find(|factor| factor * decade <= most * (1.0 + 1e-9));
     factor.unwrap_or(1.0) * decade
 }
 
 /// A number as short as it is exact to its steps.
-fn short(value: f64, step: f64) -> String {
+pub(crate) fn short(value: f64, step: f64) -> String {
     let decimals = (-libm::floor(libm::log10(step) + 1e-9)).clamp(0.0, 9.0);
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 9")]
     let text = format!("{:.*}", decimals as usize, value);

@@ -1,11 +1,11 @@
 //! Pictures of rasters, with lines, markers and words on them.
 
-mod canvas;
+pub(crate) mod canvas;
 mod color;
-mod furniture;
+pub(crate) mod furniture;
 mod labels;
 mod render;
-mod text;
+pub(crate) mod text;
 
 pub use color::{ColorMap, Rgb, coverage_color};
 
@@ -242,21 +242,7 @@ impl Picture {
     /// # Errors
     /// If the file cannot be written.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), FileError> {
-        let path = path.as_ref();
-        let (width, height, pixels) = self.pixels();
-        let mut bytes = Vec::new();
-        let mut encoder = png::Encoder::new(&mut bytes, width, height);
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_depth(png::BitDepth::Eight);
-        let written = encoder.write_header().and_then(|mut writer| {
-            writer.write_image_data(&pixels)?;
-            writer.finish()
-        });
-        written.map_err(|error| FileError::Unwritable {
-            path: path.to_path_buf(),
-            message: error.to_string(),
-        })?;
-        crate::read::write_bytes(path, &bytes)
+        self.render().save(path.as_ref())
     }
 }
 

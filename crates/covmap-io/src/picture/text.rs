@@ -11,17 +11,17 @@ static FONT: LazyLock<Face<'static>> = LazyLock::new(|| {
 });
 
 /// The height of a capital letter as a share of the size of text.
-pub(super) const CAP_HEIGHT: f32 = 0.73;
+pub(crate) const CAP_HEIGHT: f32 = 0.73;
 
 /// The length of a line of text \[pixels\].
-pub(super) fn text_width(text: &str, size: f32) -> f32 {
+pub(crate) fn text_width(text: &str, size: f32) -> f32 {
     let scale = size / f32::from(FONT.units_per_em());
     text.chars().map(|c| advance(glyph(c)) * scale).sum()
 }
 
 /// The outlines of a line of text that begins at `x` on the line `baseline` \[pixels\];
 /// `None` if there is nothing to see.
-pub(super) fn text_path(text: &str, size: f32, x: f32, baseline: f32) -> Option<Path> {
+pub(crate) fn text_path(text: &str, size: f32, x: f32, baseline: f32) -> Option<Path> {
     let scale = size / f32::from(FONT.units_per_em());
     let mut pen = Pen { path: PathBuilder::new(), x, y: baseline, scale };
     for c in text.chars() {
