@@ -59,6 +59,9 @@ struct Paired {
 pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
     let (file, config, name) = FitFile::read(&arguments.file)?;
+    for source in file.training.iter().chain(&file.held_out) {
+        source.check(&arguments.file, (&config, &name))?;
+    }
     let folder = OutputFolder::create(arguments.out.clone())?;
     let line = progress(arguments.quiet);
     let examples =

@@ -40,9 +40,7 @@ pub(crate) fn profiles(profiles: &[Profile], fitted: &ModelParameters) -> Figure
         let points = profile.points.iter();
         let line = Series {
             name: "profile".into(),
-            points: points
-                .filter_map(|(value, y)| Some(ChartPoint::new(*value, (*y)?)))
-                .collect(),
+            points: points.filter_map(|(value, y)| Some(ChartPoint::new(*value, (*y)?))).collect(),
             line: true,
             marks: true,
         };

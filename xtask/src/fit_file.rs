@@ -101,6 +101,14 @@ impl Source {
         }
     }
 
+    /// Finds what is wrong with it before any work is done.
+    pub(crate) fn check(&self, path: &Path, config: (&Config, &Path)) -> Result<()> {
+        match self {
+            Self::Simulated(source) => source.task(path, config).map(|_| ()),
+            Self::Recorded(source) => source.check(path),
+        }
+    }
+
     /// The scans and the truth.
     pub(crate) fn example(
         &self,
@@ -116,13 +124,8 @@ impl Source {
 }
 
 impl Simulated {
-    /// Lets the robot explore, and takes what it measured with the truth.
-    fn example(
-        &self,
-        path: &Path,
-        (config, name): (&Config, &Path),
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Example> {
+    /// The world and the mission in it.
+    fn task(&self, path: &Path, (config, name): (&Config, &Path)) -> Result<(World, Mission)> {
         if !(1..=MOST_SCANS).contains(&self.scans) {
             bail!("{}: scans: {} must lie in 1..={MOST_SCANS}", path.display(), self.scans);
         }
@@ -145,13 +148,24 @@ impl Simulated {
         config.planner.strategy = self.strategy;
         let limits = Limits { max_scans: Some(self.scans), ..Limits::default() };
         let mission = input::mission((&world, &file), (&config, name), None, limits)?;
-        let mut robot = SimulatedRobot::new(&world, &config, self.seed)?;
+        Ok((world, mission))
+    }
+
+    /// Lets the robot explore, and takes what it measured with the truth.
+    fn example(
+        &self,
+        path: &Path,
+        config: (&Config, &Path),
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Example> {
+        let (world, mission) = self.task(path, config)?;
+        let mut robot = SimulatedRobot::new(&world, &mission.config, self.seed)?;
         let run = explore(&mission, &mut robot, &mut |_, _| watch())?;
         let truth = Truth::new(&world, &mission);
         let scored = truth.scored_cells(&world, &mission, &run);
         let coverage = |cell| truth.coverage.get(cell).copied().unwrap_or(1.0);
         Ok(Example {
-            name: format!("{}, {}, seed {}", moved.name, self.strategy, self.seed),
+            name: format!("{}, {}, seed {}", world.name(), self.strategy, self.seed),
             ring: ring(&mission)?,
             scans: run.scans,
             grid: mission.grid,

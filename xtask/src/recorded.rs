@@ -64,13 +64,20 @@ pub(crate) fn frames(
 }
 
 impl Recorded {
+    /// Finds what is wrong with it before any work is done.
+    pub(crate) fn check(&self, path: &Path) -> Result<()> {
+        if !(self.every >= 0.0 && self.every_angle >= 0.0) {
+            bail!("{}: every and every_angle must not be negative", path.display());
+        }
+        read_ron::<Survey>(beside(path, &self.truth))?;
+        let log = beside(path, &self.log);
+        std::fs::metadata(&log).map(|_| ()).map_err(about(&log))
+    }
+
     /// The sonar's scans, and the surveyed coverage of the cells that count: seen by the laser;
     /// in sight of the robot within the usable range, or the first solid behind them; not
     /// under its body.
     pub(crate) fn example(&self, path: &Path, config: &Config) -> Result<Example> {
-        if !(self.every >= 0.0 && self.every_angle >= 0.0) {
-            bail!("{}: every and every_angle must not be negative", path.display());
-        }
         let (log, truth) = (beside(path, &self.log), beside(path, &self.truth));
         let poses = (!self.poses.as_os_str().is_empty()).then(|| beside(path, &self.poses));
         let (ring, model) = config.build()?;

@@ -5,6 +5,7 @@ mod bad_input;
 mod bad_maps;
 mod explain;
 mod explore;
+mod fit;
 mod interrupt;
 mod map;
 mod tables;
