@@ -19,8 +19,12 @@ use serde::Serialize;
 pub struct Contender {
     /// What the rows call it.
     pub name: String,
-    /// The method.
-    pub method: Method,
+    /// The method whose posteriors are taken as they are.
+    pub raw: Method,
+    /// The method whose posteriors go through the table. The same, or one that was tuned for
+    /// it: parameters that make the best of raw posteriors, by leaving walls unknown rather
+    /// than being too sure of them, need not tell the table most.
+    pub calibrated: Method,
 }
 
 /// How methods are compared.
@@ -120,9 +124,9 @@ pub fn compare(
     let cells = TestCells::new(test, settings.blocks, &mut uniform);
     let resamples = resamples(cells.blocks, settings.resamples, &mut uniform);
     let both = |contender: &Contender| -> Result<[Vec<Sums>; 2], ModelError> {
-        let table = table(&contender.method, training)?;
-        let posteriors = posteriors(&contender.method, test)?;
-        let raw = cells.sums(&posteriors, |p| p);
+        let raw = cells.sums(&posteriors(&contender.raw, test)?, |p| p);
+        let table = table(&contender.calibrated, training)?;
+        let posteriors = posteriors(&contender.calibrated, test)?;
         Ok([raw, cells.sums(&posteriors, |p| table.apply(p))])
     };
     let sums: Vec<[Vec<Sums>; 2]> = contenders.par_iter().map(both).collect::<Result<_, _>>()?;
@@ -214,6 +218,7 @@ impl TestCells {
         Self { cells, blocks: used.len() }
     }
 
+    /// The sums of every block, for what `output` makes of each posterior.
     fn sums<'a>(
         &self,
         posteriors: &'a [Vec<f64>],

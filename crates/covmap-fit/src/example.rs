@@ -82,10 +82,12 @@ impl ExampleScore {
         Self::of_all(truth.iter().map(|(cell, coverage)| (posterior(*cell), *coverage)))
     }
 
-    /// Scores posteriors, one for each cell of an example's truth.
-    pub(crate) fn of_posteriors(example: &Example, posteriors: &[Vec<f64>]) -> Self {
-        let truths = example.truth.iter().map(|(_, coverage)| *coverage);
-        Self::of_all(posteriors.iter().zip(truths))
+    /// Scores posteriors, one for each cell of the truth, in its order.
+    pub(crate) fn of_posteriors(
+        truth: &[(Cell, f64)],
+        posteriors: impl Iterator<Item = impl AsRef<[f64]>>,
+    ) -> Self {
+        Self::of_all(posteriors.zip(truth.iter().map(|(_, coverage)| *coverage)))
     }
 
     fn of_all(cells: impl Iterator<Item = (impl AsRef<[f64]>, f64)>) -> Self {

@@ -1,7 +1,9 @@
 //! Tuning any method, all of them with the same budget.
 
 use crate::search::{SearchSettings, maximise};
-use crate::{Axis, AxisError, Example, ExampleScore, Method, Parameter, Update, Weighting};
+use crate::{
+    Axis, AxisError, CalibrationTable, Example, ExampleScore, Method, Parameter, Update, Weighting,
+};
 use covmap_model::ModelError;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -132,6 +134,9 @@ impl Update {
 pub struct TuneSettings {
     /// What the likelihood is the mean of.
     pub weighting: Weighting,
+    /// Whether the likelihood is that of the output after a calibration table, fitted to the
+    /// same examples at every evaluation: for a method that will have such a table.
+    pub calibrated: bool,
     /// The budget: so many evaluations are made, no more and no fewer. When a search ends
     /// before, another one begins at a place drawn at random.
     pub evaluations: usize,
@@ -206,12 +211,14 @@ pub fn tune(
         axes.iter().zip(place).for_each(|(a, place)| a.parameter.set(&mut method, a.value(*place)));
         method
     };
-    let first = score_method(examples, &method(&given)).map_err(TuneError::Begin)?;
-    let value = |place: &[f64]| {
-        Some(settings.weighting.objective(&score_method(examples, &method(place)).ok()?))
+    let objective = |place: &[f64]| {
+        let score = score_method(examples, &method(place), settings.calibrated)?;
+        Ok(settings.weighting.objective(&score))
     };
+    let first = objective(&given).map_err(TuneError::Begin)?;
+    let value = |place: &[f64]| objective(place).ok();
 
-    let mut best = (given.clone(), settings.weighting.objective(&first));
+    let mut best = (given.clone(), first);
     let (mut made, mut stopped) = (0, axes.is_empty());
     let mut start = given.clone();
     while !stopped && made < settings.evaluations {
@@ -232,18 +239,30 @@ pub fn tune(
     Ok(Tuned { method: method(&place), log_likelihood, evaluations: made })
 }
 
-/// How well the posteriors of a method explain all examples together, cell by cell.
+/// How well a method explains all examples together, cell by cell: with its own posteriors,
+/// or `calibrated`, after a table that is fitted to these examples.
 ///
 /// # Errors
 /// If a parameter is out of its interval or does not fit an example.
 ///
 /// # Panics
 /// If a scan does not fit the ring of its example.
-pub fn score_method(examples: &[Example], method: &Method) -> Result<ExampleScore, ModelError> {
-    let score = |example: &Example| -> Result<ExampleScore, ModelError> {
-        let posteriors = method.posteriors(example)?;
-        Ok(ExampleScore::of_posteriors(example, &posteriors))
+pub fn score_method(
+    examples: &[Example],
+    method: &Method,
+    calibrated: bool,
+) -> Result<ExampleScore, ModelError> {
+    let posteriors: Result<Vec<_>, _> = examples.par_iter().map(|e| method.posteriors(e)).collect();
+    let posteriors = posteriors?;
+    let table = calibrated.then(|| {
+        let truths = examples.iter().flat_map(|e| &e.truth).map(|(_, coverage)| *coverage);
+        let cells = posteriors.iter().flatten().map(Vec::as_slice);
+        CalibrationTable::fit(cells.zip(truths), method.model.bins)
+    });
+    let score = |(example, posteriors): (&Example, &Vec<Vec<f64>>)| {
+        let output = |p| table.as_ref().map_or(p, |table| table.apply(p));
+        let posteriors = posteriors.iter().map(|p| output(p.as_slice()));
+        ExampleScore::of_posteriors(&example.truth, posteriors)
     };
-    let scores: Vec<ExampleScore> = examples.par_iter().map(score).collect::<Result<_, _>>()?;
-    Ok(ExampleScore::pooled(&scores))
+    Ok(ExampleScore::pooled(&examples.iter().zip(&posteriors).map(score).collect::<Vec<_>>()))
 }

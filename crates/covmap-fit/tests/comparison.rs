@@ -67,9 +67,9 @@ fn example(size: (f64, f64), seed: u64) -> Example {
 }
 
 fn methods() -> Vec<Contender> {
-    let contender = |(name, update): (&str, Update)| Contender {
-        name: name.to_owned(),
-        method: Method { model: ModelParameters::b21r(), update },
+    let contender = |(name, update): (&str, Update)| {
+        let method = Method { model: ModelParameters::b21r(), update };
+        Contender { name: name.to_owned(), raw: method.clone(), calibrated: method }
     };
     let updates = [
         ("constant", Update::Constant(0.5)),
@@ -146,9 +146,9 @@ fn a_table_brings_the_transform_of_training_data_to_what_it_should_be() {
 #[test]
 fn tuning_spends_its_budget_and_does_no_harm() {
     let examples = [example((3.1, 2.4), 2)];
-    let settings = TuneSettings { weighting: Weighting::Classes, evaluations: 60 };
-    for contender in &methods()[2..] {
-        let begin = &contender.method;
+    for (contender, calibrated) in methods()[2..].iter().flat_map(|c| [(c, false), (c, true)]) {
+        let settings = TuneSettings { weighting: Weighting::Classes, calibrated, evaluations: 60 };
+        let begin = &contender.raw;
         let mut values = Vec::new();
         let tuned = tune(begin, &begin.update.axes(), &examples, &settings, uniform(8), |value| {
             values.push(value);
@@ -157,7 +157,7 @@ fn tuning_spends_its_budget_and_does_no_harm() {
         let tuned = tuned.unwrap();
         assert_eq!((tuned.evaluations, values.len()), (60, 60));
         assert!(tuned.log_likelihood > values[0].unwrap(), "{}", contender.name);
-        let again = covmap_fit::score_method(&examples, &tuned.method).unwrap();
+        let again = covmap_fit::score_method(&examples, &tuned.method, calibrated).unwrap();
         let again = settings.weighting.objective(&again);
         assert!((again - tuned.log_likelihood).abs() < 1e-12);
     }
@@ -166,10 +166,10 @@ fn tuning_spends_its_budget_and_does_no_harm() {
 #[test]
 fn parameters_that_a_method_does_not_have_are_refused() {
     let examples = [example((2.0, 2.0), 2)];
-    let settings = TuneSettings { weighting: Weighting::Cells, evaluations: 5 };
+    let settings = TuneSettings { weighting: Weighting::Cells, calibrated: false, evaluations: 5 };
     let axis = Axis { parameter: MethodParameter::Lost, from: 0.1, to: 0.9 };
     let go_on = |_| ControlFlow::Continue(());
-    let method = &methods()[2].method;
+    let method = &methods()[2].raw;
     let refused = tune(method, &[axis], &examples, &settings, uniform(1), go_on);
     assert_eq!(refused, Err(TuneError::NotItsParameter(MethodParameter::Lost)));
     let nothing = tune(method, &[], &[], &settings, uniform(1), go_on);
@@ -221,8 +221,8 @@ proptest! {
     ) {
         let mut methods = methods();
         let crm = Crm { range_noise: 0.01, outlier, lost, prior, spread };
-        methods[0].method.update = Update::Crm(crm);
-        for Contender { method, name } in methods {
+        methods[0].raw.update = Update::Crm(crm);
+        for Contender { raw: method, name, .. } in methods {
             let posteriors = method.posteriors(&example).unwrap();
             prop_assert_eq!(posteriors.len(), example.truth.len());
             for p in posteriors {
