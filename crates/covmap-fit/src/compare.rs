@@ -82,7 +82,8 @@ pub struct ClassComparison {
     pub error: Estimate,
     /// The share of cells whose randomised probability integral transform lies in the
     /// central half, \[.25, .75\]: ½ for a calibrated method, over all cells. (Within a class
-    /// not even the true posterior need meet it: the class is chosen by the truth.)
+    /// not even the true posterior need meet it: the class is chosen by the truth. And mass at
+    /// both ends puts every partial truth in the middle: read it beside CRPS.)
     pub central_50: Estimate,
     /// The same for \[.05, .95\] and .9.
     pub central_90: Estimate,

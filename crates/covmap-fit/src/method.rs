@@ -20,6 +20,8 @@ pub struct LogOdds {
     pub hit: f64,
     /// Probability of "occupied" for a cell that a beam passes through.
     pub miss: f64,
+    /// The same for a beam without an echo.
+    pub no_echo: f64,
     /// The smallest probability of "occupied": the lower clamp.
     pub clamp_low: f64,
     /// 1 − the largest probability of "occupied": the upper clamp.
@@ -27,9 +29,9 @@ pub struct LogOdds {
 }
 
 impl Default for LogOdds {
-    /// Hit .7, miss .4, clamps .12 and .97.
+    /// Hit .7, miss .4 with or without an echo, clamps .12 and .97.
     fn default() -> Self {
-        Self { hit: 0.7, miss: 0.4, clamp_low: 0.12, clamp_high: 0.03 }
+        Self { hit: 0.7, miss: 0.4, no_echo: 0.4, clamp_low: 0.12, clamp_high: 0.03 }
     }
 }
 
@@ -42,10 +44,11 @@ impl LogOdds {
         };
         within("log_odds.hit", self.hit, max)?;
         within("log_odds.miss", self.miss, max)?;
+        within("log_odds.no_echo", self.no_echo, max)?;
         within("log_odds.clamp_low", self.clamp_low, 0.5)?;
         within("log_odds.clamp_high", self.clamp_high, 0.5)?;
-        let clamp = Some((self.clamp_low, 1.0 - self.clamp_high));
-        Ok(OccupancyParameters { hit: self.hit, miss: self.miss, clamp })
+        let Self { hit, miss, no_echo, clamp_low, clamp_high } = *self;
+        Ok(OccupancyParameters { hit, miss, no_echo, clamp: Some((clamp_low, 1.0 - clamp_high)) })
     }
 }
 

@@ -18,6 +18,8 @@ pub enum MethodParameter {
     Hit,
     /// [`crate::LogOdds::miss`].
     Miss,
+    /// [`crate::LogOdds::no_echo`].
+    NoEchoMiss,
     /// [`crate::LogOdds::clamp_low`].
     ClampLow,
     /// [`crate::LogOdds::clamp_high`].
@@ -52,6 +54,7 @@ impl MethodParameter {
         match (self, update) {
             (Self::Hit, Update::LogOdds(odds)) => Some(&mut odds.hit),
             (Self::Miss, Update::LogOdds(odds)) => Some(&mut odds.miss),
+            (Self::NoEchoMiss, Update::LogOdds(odds)) => Some(&mut odds.no_echo),
             (Self::ClampLow, Update::LogOdds(odds)) => Some(&mut odds.clamp_low),
             (Self::ClampHigh, Update::LogOdds(odds)) => Some(&mut odds.clamp_high),
             (Self::PriorHits, Update::BetaCounting(beta)) => Some(&mut beta.prior_hits),
@@ -101,6 +104,7 @@ impl Update {
             Self::LogOdds(_) => &[
                 (P::Hit, 0.5, 0.99),
                 (P::Miss, 0.05, 0.5),
+                (P::NoEchoMiss, 0.05, 0.5),
                 (P::ClampLow, 1e-4, 0.4),
                 (P::ClampHigh, 1e-4, 0.4),
             ],

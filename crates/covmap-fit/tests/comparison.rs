@@ -164,6 +164,19 @@ fn tuning_spends_its_budget_and_does_no_harm() {
 }
 
 #[test]
+fn every_axis_of_a_method_is_another_parameter() {
+    for Contender { mut raw, .. } in methods() {
+        let axes = raw.update.axes();
+        for (i, axis) in (1..).zip(&axes) {
+            axis.parameter.set(&mut raw, f64::from(i));
+        }
+        for (i, axis) in (1..).zip(&axes) {
+            assert!(axis.parameter.get(&raw).is_some_and(|v| (v - f64::from(i)).abs() < 1e-12));
+        }
+    }
+}
+
+#[test]
 fn parameters_that_a_method_does_not_have_are_refused() {
     let examples = [example((2.0, 2.0), 2)];
     let settings = TuneSettings { weighting: Weighting::Cells, calibrated: false, evaluations: 5 };

@@ -1,4 +1,6 @@
 //! A baseline: a forward update of the same histograms, as confidence-rich mapping does it.
+//!
+//! Its maps are only compared: the robot's own belief changes in `covmap-model` alone.
 
 use covmap::{Cell, CoverageMap, Grid, bin_coverage};
 use covmap_model::{ModelError, Outcome, SensorModel};
