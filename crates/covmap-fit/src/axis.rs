@@ -2,6 +2,7 @@
 
 use covmap_model::{FootprintRule, ModelParameters};
 use serde::{Deserialize, Serialize};
+use std::fmt::Debug;
 
 /// A parameter of the sensor model that can be fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
@@ -72,12 +73,13 @@ impl Parameter {
 /// A free parameter and the interval in which it is sought.
 ///
 /// The search walks over \[0, 1\]; `place` in it is `from + (to − from)·place`, or, if `from`
-/// is above 0, `from·(to/from)^place`: scales are sought in steps of a factor.
+/// is above 0, `from·(to/from)^place`: scales are sought in steps of a factor. `P` is one of
+/// the sensor model's parameters, or of those of any method ([`crate::MethodParameter`]).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Axis {
+pub struct Axis<P = Parameter> {
     /// The parameter.
-    pub parameter: Parameter,
+    pub parameter: P,
     /// Its smallest value.
     pub from: f64,
     /// Its largest value.
@@ -86,12 +88,12 @@ pub struct Axis {
 
 /// Why an axis cannot be searched.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum AxisError {
+pub enum AxisError<P: Debug = Parameter> {
     /// The bounds are no interval.
     #[error("{parameter:?}: from {from} and to {to} must be finite, from ≥ 0, and from < to")]
     Bounds {
         /// The parameter.
-        parameter: Parameter,
+        parameter: P,
         /// Lower bound.
         from: f64,
         /// Upper bound.
@@ -99,15 +101,15 @@ pub enum AxisError {
     },
     /// The parameter has two axes.
     #[error("{0:?} has two axes")]
-    Twice(Parameter),
+    Twice(P),
 }
 
-impl Axis {
+impl<P: Copy + PartialEq + Debug> Axis<P> {
     /// Checks some axes.
     ///
     /// # Errors
     /// If bounds are no interval, or a parameter has two axes.
-    pub fn check(axes: &[Self]) -> Result<(), AxisError> {
+    pub fn check(axes: &[Self]) -> Result<(), AxisError<P>> {
         for (i, &Self { parameter, from, to }) in axes.iter().enumerate() {
             if !(from.is_finite() && to.is_finite() && 0.0 <= from && from < to) {
                 return Err(AxisError::Bounds { parameter, from, to });
@@ -130,16 +132,23 @@ impl Axis {
         value.clamp(from, to)
     }
 
-    /// The place in \[0, 1\] of the value that some parameters have.
-    pub fn place(&self, parameters: &ModelParameters) -> f64 {
-        let Self { parameter, from, to } = *self;
-        let value = parameter.get(parameters).clamp(from, to);
+    /// The place in \[0, 1\] of a value, which is moved into the bounds.
+    pub fn place_of(&self, value: f64) -> f64 {
+        let Self { from, to, .. } = *self;
+        let value = value.clamp(from, to);
         let place = if from > 0.0 {
             libm::log(value / from) / libm::log(to / from)
         } else {
             (value - from) / (to - from)
         };
         place.clamp(0.0, 1.0)
+    }
+}
+
+impl Axis {
+    /// The place in \[0, 1\] of the value that some parameters have.
+    pub fn place(&self, parameters: &ModelParameters) -> f64 {
+        self.place_of(self.parameter.get(parameters))
     }
 
     /// Sets the parameter to the value at a place in \[0, 1\].

@@ -1,5 +1,6 @@
 //! What the model is fitted to: scans, and the truth of a fixed set of cells.
 
+use crate::Class;
 use covmap::{Cell, CoverageMap, Grid, LIKELIHOOD_FLOOR, crps, log_likelihood};
 use covmap_model::{ModelError, ModelParameters, SensorModel, integrate};
 use covmap_sonar::{Scan, SonarRing};
@@ -75,27 +76,33 @@ impl Example {
     }
 }
 
-/// A coverage this near to 0 or to 1 is one of them: exact coverages are good to this.
-const EXACT: f64 = 1e-9;
-
 impl ExampleScore {
     /// Scores the posterior of every cell against its truth.
     pub fn of(truth: &[(Cell, f64)], posterior: impl Fn(Cell) -> Vec<f64>) -> Self {
+        Self::of_all(truth.iter().map(|(cell, coverage)| (posterior(*cell), *coverage)))
+    }
+
+    /// Scores posteriors, one for each cell of the truth, in its order.
+    pub(crate) fn of_posteriors(
+        truth: &[(Cell, f64)],
+        posteriors: impl Iterator<Item = impl AsRef<[f64]>>,
+    ) -> Self {
+        Self::of_all(posteriors.zip(truth.iter().map(|(_, coverage)| *coverage)))
+    }
+
+    fn of_all(cells: impl Iterator<Item = (impl AsRef<[f64]>, f64)>) -> Self {
         let mut score = Self::default();
-        for (cell, coverage) in truth {
-            let p = posterior(*cell);
-            let class = match *coverage {
-                c if c < EXACT => &mut score.free,
-                c if c > 1.0 - EXACT => &mut score.solid,
-                _ => &mut score.partial,
+        for (p, coverage) in cells {
+            let p = p.as_ref();
+            let class = match Class::of(coverage) {
+                Class::Free => &mut score.free,
+                Class::Partial => &mut score.partial,
+                Class::Solid => &mut score.solid,
             };
-            let bins = p.len();
-            let mean: f64 =
-                p.iter().enumerate().map(|(k, p)| p * covmap::bin_coverage(k, bins)).sum();
             class.cells += 1;
-            class.log_likelihood += log_likelihood(&p, *coverage, LIKELIHOOD_FLOOR);
-            class.crps += crps(&p, *coverage);
-            class.error += (mean - coverage).abs();
+            class.log_likelihood += log_likelihood(p, coverage, LIKELIHOOD_FLOOR);
+            class.crps += crps(p, coverage);
+            class.error += (mean(p) - coverage).abs();
         }
         let classes = [score.free, score.partial, score.solid];
         score.all = classes.iter().fold(ClassScore::default(), |sum, class| ClassScore {
@@ -113,6 +120,36 @@ impl ExampleScore {
         }
         score
     }
+
+    /// The score of all examples together, cell by cell, from that of each.
+    pub(crate) fn pooled(scores: &[Self]) -> Self {
+        let pool = |class: fn(&Self) -> ClassScore| {
+            let cells: usize = scores.iter().map(|s| class(s).cells).sum();
+            #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
+            let weighted = |f: fn(&ClassScore) -> f64| {
+                let sum: f64 = scores.iter().map(|s| f(&class(s)) * class(s).cells as f64).sum();
+                sum / cells.max(1) as f64
+            };
+            ClassScore {
+                cells,
+                log_likelihood: weighted(|c| c.log_likelihood),
+                crps: weighted(|c| c.crps),
+                error: weighted(|c| c.error),
+            }
+        };
+        Self {
+            all: pool(|s| s.all),
+            free: pool(|s| s.free),
+            partial: pool(|s| s.partial),
+            solid: pool(|s| s.solid),
+        }
+    }
+}
+
+/// The expected coverage of a posterior.
+pub(crate) fn mean(posterior: &[f64]) -> f64 {
+    let bins = posterior.len();
+    posterior.iter().enumerate().map(|(k, p)| p * covmap::bin_coverage(k, bins)).sum()
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The maximum of the likelihood, by local search from many starts.
 
 use crate::search::{SearchSettings, maximise};
-use crate::{Axis, AxisError, ClassScore, Example, ExampleScore, Parameter};
+use crate::{Axis, AxisError, Example, ExampleScore, Parameter};
 use covmap_model::{ModelError, ModelParameters};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -181,26 +181,7 @@ pub fn score(
 ) -> Result<ExampleScore, ModelError> {
     let scores: Vec<ExampleScore> =
         examples.par_iter().map(|e| e.score(parameters)).collect::<Result<_, _>>()?;
-    let mean = |class: fn(&ExampleScore) -> ClassScore| {
-        let cells: usize = scores.iter().map(|s| class(s).cells).sum();
-        #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
-        let weighted = |f: fn(&ClassScore) -> f64| {
-            let sum: f64 = scores.iter().map(|s| f(&class(s)) * class(s).cells as f64).sum();
-            sum / cells.max(1) as f64
-        };
-        ClassScore {
-            cells,
-            log_likelihood: weighted(|c| c.log_likelihood),
-            crps: weighted(|c| c.crps),
-            error: weighted(|c| c.error),
-        }
-    };
-    Ok(ExampleScore {
-        all: mean(|s| s.all),
-        free: mean(|s| s.free),
-        partial: mean(|s| s.partial),
-        solid: mean(|s| s.solid),
-    })
+    Ok(ExampleScore::pooled(&scores))
 }
 
 fn is_model(example: &Example, parameters: &ModelParameters) -> bool {

@@ -1,9 +1,8 @@
 //! Tuning the sensor model: the parameters under which the map explains the truth best.
 //!
 //! Section 3 of Stachniss & Burgard (2003), last paragraph: the maximum of the likelihood of
-//! the true coverages, found by local search. The principal function is [`fit`]: it takes
-//! [`Example`]s (scans, and the truth of some cells), the [`Axis`] of every free parameter,
-//! and the parameters to begin with.
+//! the true coverages, by local search: [`fit`], to [`Example`]s, along each free [`Axis`].
+//! [`compare`] measures how other methods explain the truth, tuned alike by [`tune`].
 //!
 //! This crate knows nothing of simulated worlds and of files: the truth is given, cell by
 //! cell.
@@ -12,21 +11,27 @@
 //! Metres, radians, nats.
 //!
 //! ```
-//! use covmap_fit::{Axis, Parameter};
-//! use covmap_model::ModelParameters;
-//!
-//! let axis = Axis { parameter: Parameter::SigmaIn, from: 0.15, to: 0.5 };
-//! let mut parameters = ModelParameters::b21r();
+//! let axis = covmap_fit::Axis { parameter: covmap_fit::Parameter::SigmaIn, from: 0.15, to: 0.5 };
+//! let mut parameters = covmap_model::ModelParameters::b21r();
 //! axis.set(&mut parameters, 1.0);
 //! assert!((parameters.sigma_in - 0.5).abs() < 1e-12);
 //! ```
 
 mod axis;
+mod class;
+mod compare;
 mod example;
 mod fitting;
+mod method;
 mod search;
+mod tuning;
 
 pub use axis::{Axis, AxisError, Parameter};
+pub use class::{ByClass, Class};
+pub use compare::{CALIBRATION_LEVELS, CalibrationTable, ClassComparison, ComparisonSettings};
+pub use compare::{Contender, Difference, Estimate, Row, compare, table, trajectory_blocks};
 pub use example::{ClassScore, Example, ExampleScore};
 pub use fitting::{Evaluation, FitError, FitSettings, Fitted, Profile, Weighting, fit, score};
+pub use method::{BetaCounting, Crm, LogOdds, Method, Update};
 pub use search::{SearchSettings, Step, maximise};
+pub use tuning::{MethodParameter, TuneError, TuneSettings, Tuned, score_method, tune};

@@ -11,7 +11,7 @@ impl SensorModel {
     ///
     /// # Panics
     /// If the scan has not one reading for each beam of the model's ring.
-    pub(crate) fn for_each_covered(
+    pub fn for_each_covered(
         &self,
         grid: &Grid,
         scan: &Scan,

@@ -13,14 +13,16 @@ pub struct OccupancyParameters {
     pub hit: f64,
     /// Probability of "occupied" for a cell that a beam passes through.
     pub miss: f64,
+    /// Probability of "occupied" for a cell that a beam without an echo passes through.
+    pub no_echo: f64,
     /// Bounds on the probability, if any.
     pub clamp: Option<(f64, f64)>,
 }
 
 impl Default for OccupancyParameters {
-    /// Hit .7, miss .4, no clamps.
+    /// Hit .7, miss .4, with an echo or without, no clamps.
     fn default() -> Self {
-        Self { hit: 0.7, miss: 0.4, clamp: None }
+        Self { hit: 0.7, miss: 0.4, no_echo: 0.4, clamp: None }
     }
 }
 
@@ -50,13 +52,15 @@ impl OccupancyGrid {
     /// If the scan does not fit the model's ring.
     pub fn integrate(&mut self, model: &SensorModel, scan: &Scan) {
         let (hit, miss) = (log_odds(self.parameters.hit), log_odds(self.parameters.miss));
+        let no_echo = log_odds(self.parameters.no_echo);
         let bounds = self.parameters.clamp.map(|(low, high)| (log_odds(low), log_odds(high)));
         let half = 0.5 * model.resolution();
         let grid = *self.log_odds.grid();
         model.for_each_covered(&grid, scan, |cell, cell_distance, outcome| {
-            let delta = match outcome {
-                Outcome::Echo(d) => cell_distance - d,
-                Outcome::Beyond(_) | Outcome::NoEcho => f64::NEG_INFINITY,
+            let (delta, miss) = match outcome {
+                Outcome::Echo(d) => (cell_distance - d, miss),
+                Outcome::Beyond(_) => (f64::NEG_INFINITY, miss),
+                Outcome::NoEcho => (f64::NEG_INFINITY, no_echo),
             };
             let pinned = self.pinned.get(cell).copied().unwrap_or(true);
             if let Some(value) = self.log_odds.get_mut(cell).filter(|_| delta <= half && !pinned) {

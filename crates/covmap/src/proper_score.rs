@@ -9,8 +9,12 @@ use crate::bin_coverage;
 /// taken, so that no truth is impossible: η, the same for every method that is compared.
 pub const LIKELIHOOD_FLOOR: f64 = 0.001;
 
-/// The bin below a coverage, and the fraction of the way to the next one.
-fn place(coverage: f64, bins: usize) -> (usize, f64) {
+/// The bin below a coverage, below the last one, and the fraction of the way to the next: how
+/// a coverage between two bins is divided among them.
+///
+/// # Panics
+/// Unless there are at least two bins.
+pub fn lower_bin(coverage: f64, bins: usize) -> (usize, f64) {
     #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let place = coverage.clamp(0.0, 1.0) * (bins - 1) as f64;
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
@@ -30,7 +34,7 @@ fn place(coverage: f64, bins: usize) -> (usize, f64) {
 /// # Panics
 /// Unless there are at least two bins.
 pub fn log_likelihood(probabilities: &[f64], coverage: f64, floor: f64) -> f64 {
-    let (k, t) = place(coverage, probabilities.len());
+    let (k, t) = lower_bin(coverage, probabilities.len());
     #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let even = floor / probabilities.len() as f64;
     let log = |p: f64| libm::log((1.0 - floor) * p + even);
@@ -67,7 +71,7 @@ pub fn crps(probabilities: &[f64], coverage: f64) -> f64 {
 /// # Panics
 /// Unless there are at least two bins.
 pub fn randomised_pit(probabilities: &[f64], coverage: f64, u: f64, v: f64) -> f64 {
-    let (k, t) = place(coverage, probabilities.len());
+    let (k, t) = lower_bin(coverage, probabilities.len());
     let bin = if v < t { k + 1 } else { k };
     probabilities[..bin].iter().sum::<f64>() + u * probabilities[bin]
 }

@@ -1,0 +1,339 @@
+//! The comparison: methods tuned on some examples, measured on others.
+
+mod blocks;
+mod calibration;
+
+pub use blocks::trajectory_blocks;
+pub use calibration::{CALIBRATION_LEVELS, CalibrationTable};
+
+use crate::example::mean;
+use crate::{ByClass, Class, Example, Method, Weighting};
+use blocks::{interval, resamples};
+use covmap::{LIKELIHOOD_FLOOR, crps, log_likelihood, randomised_pit};
+use covmap_model::ModelError;
+use rayon::prelude::*;
+use serde::Serialize;
+
+/// A method with its name, ready to be compared: tuned, if it is to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Contender {
+    /// What the rows call it.
+    pub name: String,
+    /// The method whose posteriors are taken as they are.
+    pub raw: Method,
+    /// The method whose posteriors go through the table. The same, or one that was tuned for
+    /// it: parameters that make the best of raw posteriors, by leaving walls unknown rather
+    /// than being too sure of them, need not tell the table most.
+    pub calibrated: Method,
+}
+
+/// How methods are compared.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ComparisonSettings {
+    /// What the objective of a row is the mean of.
+    pub weighting: Weighting,
+    /// Into how many blocks each trajectory is cut.
+    pub blocks: usize,
+    /// How often the blocks are resampled.
+    pub resamples: usize,
+    /// The contender to which the others are compared, cell by cell; raw to raw, calibrated
+    /// to calibrated.
+    pub reference: usize,
+}
+
+impl Default for ComparisonSettings {
+    /// Classes alike, 10 blocks a trajectory, 1000 resamples; compared to the first.
+    fn default() -> Self {
+        Self { weighting: Weighting::Classes, blocks: 10, resamples: 1000, reference: 0 }
+    }
+}
+
+/// A mean over cells.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Estimate {
+    /// The mean; 0 if there are no such cells.
+    pub value: f64,
+    /// Its 95 % interval by resampling blocks of the trajectories; `None` if fewer than two
+    /// blocks have such cells.
+    pub interval: Option<(f64, f64)>,
+    /// This method − the reference on the same cells; `None` for the reference itself.
+    pub difference: Option<Difference>,
+}
+
+/// A mean of paired differences over cells.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Difference {
+    /// The mean.
+    pub value: f64,
+    /// Its 95 % interval, from the same resamples for both methods.
+    pub interval: Option<(f64, f64)>,
+}
+
+/// How well a method explains the cells of one class.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct ClassComparison {
+    /// How many cells.
+    pub cells: usize,
+    /// Mean log-likelihood of the truth, with the floor of `covmap` \[nats\].
+    pub log_likelihood: Estimate,
+    /// Mean continuous ranked probability score.
+    pub crps: Estimate,
+    /// Mean absolute error of the expected coverage.
+    pub error: Estimate,
+    /// The share of cells whose randomised probability integral transform lies in the
+    /// central half, \[.25, .75\]: ½ for a calibrated method, over all cells. (Within a class
+    /// not even the true posterior need meet it: the class is chosen by the truth. And mass at
+    /// both ends puts every partial truth in the middle: read it beside CRPS.)
+    pub central_50: Estimate,
+    /// The same for \[.05, .95\] and .9.
+    pub central_90: Estimate,
+}
+
+/// One method, raw or calibrated, on the test examples.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Row {
+    /// The contender's name.
+    pub name: String,
+    /// Whether its output went through the calibration table of the training examples.
+    pub calibrated: bool,
+    /// Mean log-likelihood by the settings' weighting \[nats\].
+    pub objective: Estimate,
+    /// Scores of all cells and of each class.
+    pub classes: ByClass<ClassComparison>,
+}
+
+/// Compares methods on `test`, with calibration tables from `training`: for every contender,
+/// in their order, a raw row and a calibrated one.
+///
+/// `uniform` draws uniform numbers in \[0, 1): first two for every cell of `test`, which
+/// randomise its transform alike for all methods, then the blocks of all resamples, which
+/// are the same for all methods too. Methods are evaluated in parallel; the result is a
+/// function of the arguments.
+///
+/// # Errors
+/// If a parameter of a method is out of its interval or does not fit an example.
+///
+/// # Panics
+/// If a scan does not fit the ring of its example.
+pub fn compare(
+    contenders: &[Contender],
+    training: &[Example],
+    test: &[Example],
+    settings: &ComparisonSettings,
+    mut uniform: impl FnMut() -> f64,
+) -> Result<Vec<Row>, ModelError> {
+    let cells = TestCells::new(test, settings.blocks, &mut uniform);
+    let resamples = resamples(cells.blocks, settings.resamples, &mut uniform);
+    let both = |contender: &Contender| -> Result<[Vec<Sums>; 2], ModelError> {
+        let raw = cells.sums(&posteriors(&contender.raw, test)?, |p| p);
+        let table = table(&contender.calibrated, training)?;
+        let posteriors = posteriors(&contender.calibrated, test)?;
+        Ok([raw, cells.sums(&posteriors, |p| table.apply(p))])
+    };
+    let sums: Vec<[Vec<Sums>; 2]> = contenders.par_iter().map(both).collect::<Result<_, _>>()?;
+    let rows = contenders.iter().enumerate().flat_map(|(i, contender)| {
+        let row = |calibrated: bool| {
+            let own = &sums[i][usize::from(calibrated)];
+            let reference = sums.get(settings.reference).filter(|_| i != settings.reference);
+            let estimates = Estimates {
+                own,
+                reference: reference.map(|sums| &sums[usize::from(calibrated)][..]),
+                resamples: &resamples,
+            };
+            estimates.row(&contender.name, calibrated, settings.weighting)
+        };
+        [false, true].map(row)
+    });
+    Ok(rows.collect())
+}
+
+fn posteriors(method: &Method, examples: &[Example]) -> Result<Vec<Vec<f64>>, ModelError> {
+    let each: Result<Vec<_>, _> = examples.par_iter().map(|e| method.posteriors(e)).collect();
+    Ok(each?.into_iter().flatten().collect())
+}
+
+fn truths(examples: &[Example]) -> impl Iterator<Item = f64> {
+    examples.iter().flat_map(|e| &e.truth).map(|(_, coverage)| *coverage)
+}
+
+/// The calibration table of a method from training examples.
+///
+/// # Errors
+/// If a parameter is out of its interval or does not fit an example.
+///
+/// # Panics
+/// If a scan does not fit the ring of its example.
+pub fn table(method: &Method, training: &[Example]) -> Result<CalibrationTable, ModelError> {
+    let posteriors = posteriors(method, training)?;
+    let cells = posteriors.iter().map(Vec::as_slice).zip(truths(training));
+    Ok(CalibrationTable::fit(cells, method.model.bins))
+}
+
+/// A cell of the test examples.
+struct TestCell {
+    truth: f64,
+    /// Of the blocks of all examples.
+    block: usize,
+    /// What randomises the transform.
+    chance: (f64, f64),
+}
+
+struct TestCells {
+    cells: Vec<TestCell>,
+    /// How many blocks have cells.
+    blocks: usize,
+}
+
+/// The measures of a cell: log-likelihood, CRPS, error, in the central half, in the central
+/// nine tenths.
+const MEASURES: usize = 5;
+const LOG_LIKELIHOOD: usize = 0;
+
+/// The sum of each measure over the cells of a block, and their number.
+#[derive(Debug, Clone, Copy, Default)]
+struct Sum {
+    cells: usize,
+    measures: [f64; MEASURES],
+}
+
+/// The sums of a block for all cells and for each class.
+type Sums = ByClass<Sum>;
+
+impl TestCells {
+    fn new(test: &[Example], blocks: usize, uniform: &mut impl FnMut() -> f64) -> Self {
+        let mut cells = Vec::new();
+        for (i, example) in test.iter().enumerate() {
+            let of_cells = trajectory_blocks(example, blocks);
+            for ((_, truth), block) in example.truth.iter().zip(of_cells) {
+                let block = i * blocks.max(1) + block;
+                cells.push(TestCell { truth: *truth, block, chance: (uniform(), uniform()) });
+            }
+        }
+        // Blocks without cells are none.
+        let mut used: Vec<usize> = cells.iter().map(|cell| cell.block).collect();
+        used.sort_unstable();
+        used.dedup();
+        for cell in &mut cells {
+            cell.block = used.partition_point(|block| *block < cell.block);
+        }
+        Self { cells, blocks: used.len() }
+    }
+
+    /// The sums of every block, for what `output` makes of each posterior.
+    fn sums<'a>(
+        &self,
+        posteriors: &'a [Vec<f64>],
+        output: impl Fn(&'a [f64]) -> &'a [f64],
+    ) -> Vec<Sums> {
+        let mut sums = vec![Sums::default(); self.blocks];
+        for (cell, posterior) in self.cells.iter().zip(posteriors) {
+            let p = output(posterior);
+            let pit = randomised_pit(p, cell.truth, cell.chance.0, cell.chance.1);
+            let central = |level: f64| f64::from(u8::from((pit - 0.5).abs() <= 0.5 * level));
+            let measures = [
+                log_likelihood(p, cell.truth, LIKELIHOOD_FLOOR),
+                crps(p, cell.truth),
+                (mean(p) - cell.truth).abs(),
+                central(0.5),
+                central(0.9),
+            ];
+            let block = &mut sums[cell.block];
+            let class = match Class::of(cell.truth) {
+                Class::Free => &mut block.free,
+                Class::Partial => &mut block.partial,
+                Class::Solid => &mut block.solid,
+            };
+            for sum in [class, &mut block.all] {
+                sum.cells += 1;
+                sum.measures.iter_mut().zip(measures).for_each(|(sum, value)| *sum += value);
+            }
+        }
+        sums
+    }
+}
+
+/// What the estimates of a row come from: sums of every block of one method and of the
+/// reference, and how often each block is drawn.
+struct Estimates<'a> {
+    own: &'a [Sums],
+    reference: Option<&'a [Sums]>,
+    resamples: &'a [Vec<f64>],
+}
+
+impl Estimates<'_> {
+    fn row(&self, name: &str, calibrated: bool, weighting: Weighting) -> Row {
+        let objective =
+            self.estimate(self.own.len() >= 2, |sums, drawn| objective(sums, drawn, weighting));
+        let classes = ByClass::from_fn(|class| {
+            let estimate = |measure: usize| {
+                let with = self.own.iter().filter(|sums| sums.get(class).cells > 0).count();
+                self.estimate(with >= 2, |sums, drawn| average(sums, drawn, class, measure))
+            };
+            ClassComparison {
+                cells: self.own.iter().map(|sums| sums.get(class).cells).sum(),
+                log_likelihood: estimate(LOG_LIKELIHOOD),
+                crps: estimate(1),
+                error: estimate(2),
+                central_50: estimate(3),
+                central_90: estimate(4),
+            }
+        });
+        Row { name: name.to_owned(), calibrated, objective, classes }
+    }
+
+    /// An estimate; without intervals if there are not enough blocks.
+    fn estimate(
+        &self,
+        enough: bool,
+        of: impl Fn(&[Sums], Option<&[f64]>) -> Option<f64>,
+    ) -> Estimate {
+        let interval = |of: &dyn Fn(Option<&[f64]>) -> Option<f64>| {
+            let values = self.resamples.iter().map(|drawn| of(Some(drawn)));
+            if enough { interval(values) } else { None }
+        };
+        let own = |drawn: Option<&[f64]>| of(self.own, drawn);
+        let difference = self.reference.and_then(|reference| {
+            let difference =
+                |drawn: Option<&[f64]>| Some(of(self.own, drawn)? - of(reference, drawn)?);
+            Some(Difference { value: difference(None)?, interval: interval(&difference) })
+        });
+        Estimate { value: own(None).unwrap_or(0.0), interval: interval(&own), difference }
+    }
+}
+
+/// The mean of a measure over the cells of a class, blocks counted as often as they are
+/// drawn; `None` if no such cell is drawn.
+fn average(
+    sums: &[Sums],
+    drawn: Option<&[f64]>,
+    class: Option<Class>,
+    measure: usize,
+) -> Option<f64> {
+    let (mut cells, mut total) = (0.0, 0.0);
+    for (block, sums) in sums.iter().enumerate() {
+        let times = drawn.map_or(1.0, |drawn| drawn[block]);
+        let sum = sums.get(class);
+        #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
+        let count = sum.cells as f64;
+        cells += times * count;
+        total += times * sum.measures[measure];
+    }
+    (cells > 0.0).then(|| total / cells)
+}
+
+/// The mean log-likelihood by a weighting; `None` if no cell of one of its classes is drawn.
+fn objective(sums: &[Sums], drawn: Option<&[f64]>, weighting: Weighting) -> Option<f64> {
+    let of = |class| average(sums, drawn, class, LOG_LIKELIHOOD);
+    match weighting {
+        Weighting::Cells => of(None),
+        Weighting::Classes => {
+            let classes = [Class::Free, Class::Partial, Class::Solid].map(Some);
+            let is_there = |class: &Option<Class>| sums.iter().any(|s| s.get(*class).cells > 0);
+            let there = classes.into_iter().filter(is_there);
+            let means: Vec<f64> = there.map(of).collect::<Option<_>>()?;
+            #[allow(clippy::cast_precision_loss, reason = "at most 3")]
+            let mean = means.iter().sum::<f64>() / means.len() as f64;
+            (!means.is_empty()).then_some(mean)
+        }
+    }
+}

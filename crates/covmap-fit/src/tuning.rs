@@ -1,0 +1,272 @@
+//! Tuning any method, all of them with the same budget.
+
+use crate::search::{SearchSettings, maximise};
+use crate::{
+    Axis, AxisError, CalibrationTable, Example, ExampleScore, Method, Parameter, Update, Weighting,
+};
+use covmap_model::ModelError;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::ops::ControlFlow;
+
+/// A parameter of a method.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+pub enum MethodParameter {
+    /// One of the sensor model: of the footprint, for baselines.
+    Model(Parameter),
+    /// [`crate::LogOdds::hit`].
+    Hit,
+    /// [`crate::LogOdds::miss`].
+    Miss,
+    /// [`crate::LogOdds::no_echo`].
+    NoEchoMiss,
+    /// [`crate::LogOdds::clamp_low`].
+    ClampLow,
+    /// [`crate::LogOdds::clamp_high`].
+    ClampHigh,
+    /// [`crate::BetaCounting::prior_hits`].
+    PriorHits,
+    /// [`crate::BetaCounting::prior_passes`].
+    PriorPasses,
+    /// [`crate::BetaCounting::hit`].
+    HitCount,
+    /// [`crate::BetaCounting::behind`].
+    BehindCount,
+    /// [`crate::BetaCounting::pass`].
+    PassCount,
+    /// [`crate::BetaCounting::no_echo`].
+    NoEchoCount,
+    /// [`crate::Crm::range_noise`] \[m\].
+    RangeNoise,
+    /// [`crate::Crm::outlier`].
+    Outlier,
+    /// [`crate::Crm::lost`].
+    Lost,
+    /// [`crate::Crm::prior`].
+    Prior,
+    /// [`crate::Crm::spread`].
+    Spread,
+}
+
+impl MethodParameter {
+    /// Where the parameter stands; `None` if the method has no such parameter.
+    fn place(self, update: &mut Update) -> Option<&mut f64> {
+        match (self, update) {
+            (Self::Hit, Update::LogOdds(odds)) => Some(&mut odds.hit),
+            (Self::Miss, Update::LogOdds(odds)) => Some(&mut odds.miss),
+            (Self::NoEchoMiss, Update::LogOdds(odds)) => Some(&mut odds.no_echo),
+            (Self::ClampLow, Update::LogOdds(odds)) => Some(&mut odds.clamp_low),
+            (Self::ClampHigh, Update::LogOdds(odds)) => Some(&mut odds.clamp_high),
+            (Self::PriorHits, Update::BetaCounting(beta)) => Some(&mut beta.prior_hits),
+            (Self::PriorPasses, Update::BetaCounting(beta)) => Some(&mut beta.prior_passes),
+            (Self::HitCount, Update::BetaCounting(beta)) => Some(&mut beta.hit),
+            (Self::BehindCount, Update::BetaCounting(beta)) => Some(&mut beta.behind),
+            (Self::PassCount, Update::BetaCounting(beta)) => Some(&mut beta.pass),
+            (Self::NoEchoCount, Update::BetaCounting(beta)) => Some(&mut beta.no_echo),
+            (Self::RangeNoise, Update::Crm(crm)) => Some(&mut crm.range_noise),
+            (Self::Outlier, Update::Crm(crm)) => Some(&mut crm.outlier),
+            (Self::Lost, Update::Crm(crm)) => Some(&mut crm.lost),
+            (Self::Prior, Update::Crm(crm)) => Some(&mut crm.prior),
+            (Self::Spread, Update::Crm(crm)) => Some(&mut crm.spread),
+            _ => None,
+        }
+    }
+
+    /// Its value; `None` if the method has no such parameter.
+    pub fn get(self, method: &Method) -> Option<f64> {
+        match self {
+            Self::Model(parameter) => Some(parameter.get(&method.model)),
+            _ => self.place(&mut method.update.clone()).map(|value| *value),
+        }
+    }
+
+    /// Sets it; nothing happens if the method has no such parameter.
+    pub fn set(self, method: &mut Method, value: f64) {
+        match self {
+            Self::Model(parameter) => parameter.set(&mut method.model, value),
+            _ => {
+                if let Some(place) = self.place(&mut method.update) {
+                    *place = value;
+                }
+            }
+        }
+    }
+}
+
+impl Update {
+    /// The axes of a baseline: all its own parameters, and those of the footprint that the
+    /// coverage map's fit moves as well, in the same intervals. None for the coverage map,
+    /// whose axes stand in the file of its fit, and for a constant.
+    pub fn axes(&self) -> Vec<Axis<MethodParameter>> {
+        use MethodParameter as P;
+        let own: &[(P, f64, f64)] = match self {
+            Self::Coverage | Self::Constant(_) => return Vec::new(),
+            Self::LogOdds(_) => &[
+                (P::Hit, 0.5, 0.99),
+                (P::Miss, 0.05, 0.5),
+                (P::NoEchoMiss, 0.05, 0.5),
+                (P::ClampLow, 1e-4, 0.4),
+                (P::ClampHigh, 1e-4, 0.4),
+            ],
+            Self::BetaCounting(_) => &[
+                (P::PriorHits, 0.01, 10.0),
+                (P::PriorPasses, 0.01, 10.0),
+                (P::HitCount, 0.01, 10.0),
+                (P::BehindCount, 0.0, 5.0),
+                (P::PassCount, 0.001, 10.0),
+                (P::NoEchoCount, 0.0, 5.0),
+                (P::Model(Parameter::Behind), 0.0, 0.3),
+            ],
+            Self::Crm(_) => &[
+                (P::RangeNoise, 0.01, 0.5),
+                (P::Outlier, 0.001, 0.5),
+                (P::Lost, 0.01, 0.9),
+                (P::Prior, 0.01, 1.0),
+                (P::Spread, 0.0, 1.0),
+                (P::Model(Parameter::Tempering), 0.05, 1.0),
+                (P::Model(Parameter::Behind), 0.0, 0.3),
+            ],
+        };
+        let no_echo = (P::Model(Parameter::NoEchoRange), 0.5, 3.0);
+        let axis = |&(parameter, from, to): &(P, f64, f64)| Axis { parameter, from, to };
+        own.iter().chain([&no_echo]).map(axis).collect()
+    }
+}
+
+/// How a method is tuned.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TuneSettings {
+    /// What the likelihood is the mean of.
+    pub weighting: Weighting,
+    /// Whether the likelihood is that of the output after a calibration table, fitted to the
+    /// same examples at every evaluation: for a method that will have such a table.
+    pub calibrated: bool,
+    /// The budget: so many evaluations are made, no more and no fewer. When a search ends
+    /// before, another one begins at a place drawn at random.
+    pub evaluations: usize,
+}
+
+/// What tuning came to.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Tuned {
+    /// The best method.
+    pub method: Method,
+    /// Its objective on the examples: mean log-likelihood by the settings' weighting
+    /// \[nats\].
+    pub log_likelihood: f64,
+    /// How many evaluations were made: the budget, or 0 without axes, or fewer if it was
+    /// stopped.
+    pub evaluations: usize,
+}
+
+/// Why a method cannot be tuned.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum TuneError {
+    /// There is nothing to tune to.
+    #[error("there are no cells to tune to")]
+    NoCells,
+    /// An axis is impossible.
+    #[error(transparent)]
+    Axis(#[from] AxisError<MethodParameter>),
+    /// The method has no such parameter.
+    #[error("the method has no parameter {0:?}")]
+    NotItsParameter(MethodParameter),
+    /// The given parameters, moved into the bounds, make no method.
+    #[error("the parameters to begin with, moved into the bounds of the axes: {0}")]
+    Begin(ModelError),
+}
+
+/// A start drawn at random may make no method: so many are tried.
+const DRAWS: usize = 1000;
+
+/// Tunes a method to examples, as [`crate::fit`] does the sensor model: the largest mean
+/// log-likelihood of the true coverage of their cells. The first search begins at the given
+/// parameters; `uniform` draws uniform numbers in \[0, 1) for the starts of the others.
+///
+/// `report` sees the objective at each evaluation, and may end it: the best so far is then
+/// the result. The examples are evaluated in parallel; the result is a function of the
+/// arguments.
+///
+/// # Errors
+/// If there are no cells, an axis is impossible or not one of the method's, or the parameters
+/// to begin with make no method within the bounds.
+///
+/// # Panics
+/// If a scan does not fit the ring of its example.
+pub fn tune(
+    begin: &Method,
+    axes: &[Axis<MethodParameter>],
+    examples: &[Example],
+    settings: &TuneSettings,
+    mut uniform: impl FnMut() -> f64,
+    mut report: impl FnMut(Option<f64>) -> ControlFlow<()>,
+) -> Result<Tuned, TuneError> {
+    Axis::check(axes)?;
+    if examples.iter().all(|example| example.truth.is_empty()) {
+        return Err(TuneError::NoCells);
+    }
+    let place = |axis: &Axis<MethodParameter>| match axis.parameter.get(begin) {
+        Some(value) => Ok(axis.place_of(value)),
+        None => Err(TuneError::NotItsParameter(axis.parameter)),
+    };
+    let given: Vec<f64> = axes.iter().map(place).collect::<Result<_, _>>()?;
+    let method = |place: &[f64]| {
+        let mut method = begin.clone();
+        axes.iter().zip(place).for_each(|(a, place)| a.parameter.set(&mut method, a.value(*place)));
+        method
+    };
+    let objective = |place: &[f64]| {
+        let score = score_method(examples, &method(place), settings.calibrated)?;
+        Ok(settings.weighting.objective(&score))
+    };
+    let first = objective(&given).map_err(TuneError::Begin)?;
+    let value = |place: &[f64]| objective(place).ok();
+
+    let mut best = (given.clone(), first);
+    let (mut made, mut stopped) = (0, axes.is_empty());
+    let mut start = given.clone();
+    while !stopped && made < settings.evaluations {
+        let left = settings.evaluations - made;
+        let search = SearchSettings { evaluations: left, ..SearchSettings::default() };
+        let found = maximise(&start, &search, value, |step| {
+            made += 1;
+            let next = report(step.value);
+            stopped = next.is_break();
+            next
+        });
+        best = found.filter(|found| found.1 > best.1).unwrap_or(best);
+        let mut draw = || axes.iter().map(|_| uniform()).collect::<Vec<f64>>();
+        let is_one = |place: &Vec<f64>| examples.iter().all(|e| method(place).check(e).is_ok());
+        start = (0..DRAWS).map(|_| draw()).find(is_one).unwrap_or_else(|| given.clone());
+    }
+    let (place, log_likelihood) = best;
+    Ok(Tuned { method: method(&place), log_likelihood, evaluations: made })
+}
+
+/// How well a method explains all examples together, cell by cell: with its own posteriors,
+/// or `calibrated`, after a table that is fitted to these examples.
+///
+/// # Errors
+/// If a parameter is out of its interval or does not fit an example.
+///
+/// # Panics
+/// If a scan does not fit the ring of its example.
+pub fn score_method(
+    examples: &[Example],
+    method: &Method,
+    calibrated: bool,
+) -> Result<ExampleScore, ModelError> {
+    let posteriors: Result<Vec<_>, _> = examples.par_iter().map(|e| method.posteriors(e)).collect();
+    let posteriors = posteriors?;
+    let table = calibrated.then(|| {
+        let truths = examples.iter().flat_map(|e| &e.truth).map(|(_, coverage)| *coverage);
+        let cells = posteriors.iter().flatten().map(Vec::as_slice);
+        CalibrationTable::fit(cells.zip(truths), method.model.bins)
+    });
+    let score = |(example, posteriors): (&Example, &Vec<Vec<f64>>)| {
+        let output = |p| table.as_ref().map_or(p, |table| table.apply(p));
+        let posteriors = posteriors.iter().map(|p| output(p.as_slice()));
+        ExampleScore::of_posteriors(&example.truth, posteriors)
+    };
+    Ok(ExampleScore::pooled(&examples.iter().zip(&posteriors).map(score).collect::<Vec<_>>()))
+}
