@@ -109,6 +109,19 @@ Example:
   cargo xtask survey robot/test1 --poses robot/test1_poses.txt --out truth.ron
 ";
 
+const COMPARE_EXAMPLES: &str = "\
+FIT.ron is a file for `fit`. Every method is tuned on `training` with `evaluations` maps, once for its
+own posteriors and once for a calibration table, and checked on `held_out`; then the other way
+round. The methods: coverage maps unfitted, with γ and σ fitted, and with all of `axes` fitted; log-odds
+occupancy; Beta counting; a forward model on the same histograms (CRM); two constants.
+Intervals come from resampling blocks of the trajectories.
+
+The folder that is written: compare.csv, and compare.json with the tuned parameters.
+
+Example:
+  cargo xtask compare configs/fit/b21r.ron --out out/compare
+";
+
 const FIT_EXAMPLES: &str = "\
 FIT.ron names a configuration, examples to fit to, examples held out, and the free parameters
 with their bounds; see configs/fit/*.ron. The robot explores each example's world with the given
@@ -158,6 +171,9 @@ pub(crate) enum Command {
     /// Fits the sensor model to the truth by local search, and writes a configuration.
     #[command(after_help = FIT_EXAMPLES)]
     Fit(Fit),
+    /// Compares coverage maps with other methods, tuned alike, on truth that they were not fitted to.
+    #[command(after_help = COMPARE_EXAMPLES)]
+    Compare(Compare),
     /// Finds the walls of a building in the laser scans of a log: the truth to score maps with.
     #[command(after_help = SURVEY_EXAMPLES)]
     Survey(Survey),
@@ -284,6 +300,19 @@ pub(crate) struct Model {
 #[derive(Debug, Args)]
 pub(crate) struct Fit {
     /// What is fitted to what (.ron)
+    #[arg(value_name = "FIT.ron")]
+    pub(crate) file: PathBuf,
+    /// Where the results go
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Compare {
+    /// What is compared on what (.ron, as for `fit`)
     #[arg(value_name = "FIT.ron")]
     pub(crate) file: PathBuf,
     /// Where the results go

@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout, reason = "a program talks to its user")]
 
 mod arguments;
+mod compare;
 mod csv_file;
 mod explain;
 mod explain_picture;
@@ -46,6 +47,7 @@ fn main() -> ExitCode {
         Command::Truth(arguments) => truth::run(&arguments),
         Command::Model(arguments) => model::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
+        Command::Compare(arguments) => compare::run(&arguments),
         Command::Survey(arguments) => survey::run(&arguments),
     };
     done.unwrap_or_else(|error| {

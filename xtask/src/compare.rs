@@ -1,0 +1,251 @@
+//! `compare`: mapping methods against the same truth, each tuned and calibrated alike.
+
+use crate::arguments::Compare;
+use crate::fit_file::{FitFile, Source};
+use crate::interrupt::Interrupt;
+use crate::progress::Progress;
+use crate::{csv_file, interrupt, say};
+use anyhow::{Result, bail};
+use covmap_explore::Config;
+use covmap_fit::{
+    Axis, BetaCounting, ComparisonSettings, Contender, Crm, Estimate, Example, LogOdds, Method,
+    MethodParameter, Row, TuneSettings, Update, compare, tune,
+};
+use covmap_io::{OutputFolder, write_json};
+use covmap_world::{stream, uniform};
+use serde::Serialize;
+use std::io::Write;
+use std::ops::ControlFlow;
+use std::process::ExitCode;
+
+/// The parameters that the paper fits: those of Eq. (9).
+const PAPER: [covmap_fit::Parameter; 7] = [
+    covmap_fit::Parameter::GammaBase,
+    covmap_fit::Parameter::GammaPerCellDistance,
+    covmap_fit::Parameter::GammaPerRange,
+    covmap_fit::Parameter::SigmaOutBase,
+    covmap_fit::Parameter::SigmaOutPerCellDistance,
+    covmap_fit::Parameter::SigmaOutPerRange,
+    covmap_fit::Parameter::SigmaIn,
+];
+
+/// Fitted on some examples, checked on others.
+#[derive(Serialize)]
+struct Direction {
+    fitted_on: Vec<String>,
+    checked_on: Vec<String>,
+    /// How each contender was tuned.
+    contenders: Vec<Tuned>,
+    rows: Vec<Row>,
+}
+
+#[derive(Serialize)]
+struct Tuned {
+    name: String,
+    raw: Method,
+    calibrated: Method,
+}
+
+/// A method before it is tuned.
+struct Entry {
+    name: &'static str,
+    method: Method,
+    axes: Vec<Axis<MethodParameter>>,
+}
+
+pub(crate) fn run(arguments: &Compare) -> Result<ExitCode> {
+    let interrupt = Interrupt::listen()?;
+    let (file, config, name) = FitFile::read(&arguments.file)?;
+    if file.held_out.is_empty() {
+        bail!("{}: held_out: a comparison needs at least one entry", arguments.file.display());
+    }
+    for source in file.training.iter().chain(&file.held_out) {
+        source.check(&arguments.file, (&config, &name))?;
+    }
+    let folder = OutputFolder::create(arguments.out.clone())?;
+    let mut progress = Progress::new(arguments.quiet);
+    let examples = |sources: &[Source]| -> Result<Vec<Example>> {
+        let example = |source: &Source| {
+            progress.say(&format!("reading {}", source.file().display()));
+            source.example(&arguments.file, (&config, &name), &mut || interrupt.next())
+        };
+        sources.iter().map(example).collect()
+    };
+    let (a, b) = (examples(&file.training)?, examples(&file.held_out)?);
+    let mut directions = Vec::new();
+    for (training, test) in [(&a, &b), (&b, &a)] {
+        if interrupt.is_pressed() {
+            return Ok(ExitCode::from(interrupt::EXIT_CODE));
+        }
+        directions.push(direction(&file, &config, (training, test), &interrupt, &mut progress)?);
+    }
+    write_table(&folder, &directions)?;
+    write_json(folder.path("compare.json"), &directions)?;
+    let written = folder.finish()?;
+    progress.finish();
+    if !arguments.quiet {
+        directions.iter().for_each(tell);
+        say::line(written.display());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// What is compared, the reference first.
+fn entries(file: &FitFile, config: &Config, training: &[Example]) -> Vec<Entry> {
+    let model = || config.model.clone();
+    let with = |update: Update| Method { model: model(), update };
+    let coverage = |name, is_free: &dyn Fn(&Axis) -> bool| {
+        let free = file.axes.iter().filter(|axis| is_free(axis));
+        let axes = free.map(|&Axis { parameter, from, to }| Axis {
+            parameter: MethodParameter::Model(parameter),
+            from,
+            to,
+        });
+        Entry { name, method: with(Update::Coverage), axes: axes.collect() }
+    };
+    let baseline = |name, update: Update| Entry { name, axes: update.axes(), method: with(update) };
+    let constant = |name, method| Entry { name, method, axes: Vec::new() };
+    vec![
+        coverage("coverage, all free", &|_| true),
+        coverage("coverage, γ and σ", &|axis| PAPER.contains(&axis.parameter)),
+        coverage("coverage, unfitted", &|_| false),
+        baseline("log-odds", Update::LogOdds(LogOdds::default())),
+        baseline("Beta counting", Update::BetaCounting(BetaCounting::default())),
+        baseline("forward (CRM)", Update::Crm(Crm::default())),
+        constant("constant .5", with(Update::Constant(0.5))),
+        constant("constant, mean", Method::training_mean(model(), training)),
+    ]
+}
+
+fn direction(
+    file: &FitFile,
+    config: &Config,
+    (training, test): (&[Example], &[Example]),
+    interrupt: &Interrupt,
+    progress: &mut Progress,
+) -> Result<Direction> {
+    let mut contenders = Vec::new();
+    for (number, entry) in (0u64..).zip(entries(file, config, training)) {
+        let mut tuned = |calibrated: bool| -> Result<Method> {
+            if entry.axes.is_empty() {
+                return Ok(entry.method.clone());
+            }
+            let settings = TuneSettings {
+                weighting: file.weighting,
+                calibrated,
+                evaluations: file.evaluations,
+            };
+            let mut random = stream(file.seed, "compare", 2 * number + u64::from(calibrated));
+            let mut count = 0;
+            let report = |_: Option<f64>| {
+                count += 1;
+                progress.tell(|| format!("{}: {count} of {} maps", entry.name, file.evaluations));
+                interrupt.next()
+            };
+            let tuned = tune(
+                &entry.method,
+                &entry.axes,
+                training,
+                &settings,
+                || uniform(&mut random),
+                report,
+            )?;
+            Ok(tuned.method)
+        };
+        let (raw, calibrated) = (tuned(false)?, tuned(true)?);
+        contenders.push(Contender { name: entry.name.to_owned(), raw, calibrated });
+    }
+    progress.say("resampling blocks of the trajectories …");
+    let settings =
+        ComparisonSettings { weighting: file.weighting, ..ComparisonSettings::default() };
+    let mut random = stream(file.seed, "blocks", 0);
+    let rows = compare(&contenders, training, test, &settings, || uniform(&mut random))?;
+    let names = |examples: &[Example]| examples.iter().map(|e| e.name.clone()).collect();
+    let kept = |c: Contender| Tuned { name: c.name, raw: c.raw, calibrated: c.calibrated };
+    Ok(Direction {
+        fitted_on: names(training),
+        checked_on: names(test),
+        contenders: contenders.into_iter().map(kept).collect(),
+        rows,
+    })
+}
+
+const COLUMNS: &str = "fitted_on,method,calibrated,class,cells,log_likelihood,log_likelihood_low,\
+log_likelihood_high,difference,difference_low,difference_high,crps,error,central_50,central_90";
+
+fn write_table(folder: &OutputFolder, directions: &[Direction]) -> Result<()> {
+    csv_file::write(&folder.path("compare.csv"), |table| {
+        writeln!(table, "{COLUMNS}")?;
+        for direction in directions {
+            for row in &direction.rows {
+                let classes = [
+                    ("all", &row.classes.all),
+                    ("free", &row.classes.free),
+                    ("partial", &row.classes.partial),
+                    ("solid", &row.classes.solid),
+                ];
+                for (class, score) in classes {
+                    let likelihood = &score.log_likelihood;
+                    let ends = |interval: Option<(f64, f64)>| {
+                        interval
+                            .map_or_else(|| ",".to_owned(), |(low, high)| format!("{low},{high}"))
+                    };
+                    let difference = likelihood.difference.map_or_else(
+                        || ",,".to_owned(),
+                        |d| format!("{},{}", d.value, ends(d.interval)),
+                    );
+                    writeln!(
+                        table,
+                        "{:?},{:?},{},{class},{},{},{},{difference},{},{},{},{}",
+                        direction.fitted_on.join(" + "),
+                        row.name,
+                        row.calibrated,
+                        score.cells,
+                        likelihood.value,
+                        ends(likelihood.interval),
+                        score.crps.value,
+                        score.error.value,
+                        score.central_50.value,
+                        score.central_90.value
+                    )?;
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+fn tell(direction: &Direction) {
+    say::line(format!(
+        "fitted on {}, checked on {}: mean log-likelihood [nats] with its 95 % interval, CRPS,\n\
+         mean absolute error, and the share of truths in the central 90 %",
+        direction.fitted_on.join(" + "),
+        direction.checked_on.join(" + ")
+    ));
+    for row in &direction.rows {
+        let in_words = |estimate: &Estimate| match estimate.interval {
+            Some((low, high)) => format!("{:7.3} [{low:7.3}, {high:7.3}]", estimate.value),
+            None => format!("{:7.3}                    ", estimate.value),
+        };
+        let (all, partial) = (&row.classes.all, &row.classes.partial);
+        say::line(format!(
+            "  {:18} {:10} all {}  crps {:.3}  error {:.3}  90 %: {:.2}   partial {}  error {:.3}  90 %: {:.2}",
+            row.name,
+            if row.calibrated { "calibrated" } else { "" },
+            in_words(&all.log_likelihood),
+            all.crps.value,
+            all.error.value,
+            all.central_90.value,
+            in_words(&partial.log_likelihood),
+            partial.error.value,
+            partial.central_90.value
+        ));
+    }
+}
+
+impl Interrupt {
+    /// What a watcher answers.
+    fn next(&self) -> ControlFlow<()> {
+        if self.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
