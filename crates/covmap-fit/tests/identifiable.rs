@@ -1,5 +1,7 @@
 //! Truths that are drawn from the maps of a known model give its parameters back.
 
+#![allow(clippy::unwrap_used, reason = "a test that fails must fail")]
+
 use covmap::{Grid, bin_coverage};
 use covmap_fit::{Axis, Example, FitSettings, Parameter, SearchSettings, Weighting, fit};
 use covmap_model::ModelParameters;

@@ -127,8 +127,8 @@ pub enum ModelError {
 }
 
 impl ModelParameters {
-    /// A B21r's sonars: 11 bins, 3 m usable range, the paper's 20 cm. Chosen by hand on small
-    /// simulated worlds, not fitted.
+    /// A B21r's sonars: 11 bins, 3 m usable range, 10 cm behind an echo. Chosen by hand
+    /// on small simulated worlds, not fitted.
     pub fn b21r() -> Self {
         Self {
             bins: 11,
