@@ -40,9 +40,7 @@ pub(crate) fn profiles(profiles: &[Profile], fitted: &ModelParameters) -> Figure
         let points = profile.points.iter();
         let line = Series {
             name: "profile".into(),
-            points: points
-                .filter_map(|(value, y)| Some(ChartPoint::new(*value, (*y)?)))
-                .collect(),
+            points: points.filter_map(|(value, y)| Some(ChartPoint::new(*value, (*y)?))).collect(),
             line: true,
             marks: true,
         };
@@ -50,7 +48,7 @@ pub(crate) fn profiles(profiles: &[Profile], fitted: &ModelParameters) -> Figure
         Chart {
             title: format!("{:?} = {value:.3}", profile.parameter),
             subtitle: String::new(),
-            x: ChartAxis::new(&format!("{:?}{}", profile.parameter, unit(profile.parameter))),
+            x: ChartAxis::new(format!("{:?}{}", profile.parameter, unit(profile.parameter))),
             y: ChartAxis::new("log-likelihood [nats]"),
             series: vec![line],
         }

@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout, reason = "a program talks to its user")]
 
 mod arguments;
+mod bench;
 mod csv_file;
 mod explain;
 mod explain_picture;
@@ -47,6 +48,7 @@ fn main() -> ExitCode {
         Command::Model(arguments) => model::run(&arguments),
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Survey(arguments) => survey::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
     };
     done.unwrap_or_else(|error| {
         say::error(&error);
