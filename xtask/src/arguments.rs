@@ -125,10 +125,11 @@ Example:
 ";
 
 const BENCH_EXAMPLES: &str = "\
-Each row is a ratio, measured on one core in one run: how many times as long the other way takes
-to the same answers. Behind a ratio below its target stands `falls short`; that is no error. The
-last lines say how well the answers agree, and how long a decision takes on all threads. The worlds
-are offices like scenarios/office.ron in cells of 0.1 m, partly explored, with a fixed seed.
+Each row is a ratio, measured on one core in one run, by the time that the core computes: how many
+times as long the other way takes to the same answers. Behind a ratio below its target stands
+`falls short`; that is no error. The last lines say how well the answers agree, and how long a
+decision takes on all threads, by the clock. The worlds are offices like scenarios/office.ron in
+cells of 0.1 m, partly explored, with a fixed seed.
 
 Examples:
   cargo xtask bench           the whole table, some minutes

@@ -1,13 +1,39 @@
 //! Taking times.
 
+use cpu_time::ThreadTime;
 use std::hint::black_box;
 use std::time::Instant;
 
-/// How long something takes \[s\], and what comes of it.
+/// A clock.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Clock {
+    /// What one thread computes, whatever else the machine does: for work on one core.
+    Core,
+    /// What passes: for work on many threads.
+    Wall,
+}
+
+impl Clock {
+    /// How long something takes \[s\], and what comes of it.
+    pub(super) fn time<T>(self, work: impl FnOnce() -> T) -> (f64, T) {
+        match self {
+            Clock::Core => {
+                let begun = ThreadTime::now();
+                let result = black_box(work());
+                (begun.elapsed().as_secs_f64(), result)
+            }
+            Clock::Wall => {
+                let begun = Instant::now();
+                let result = black_box(work());
+                (begun.elapsed().as_secs_f64(), result)
+            }
+        }
+    }
+}
+
+/// How long something takes on this core \[s\], and what comes of it.
 pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
-    let begun = Instant::now();
-    let result = black_box(work());
-    (begun.elapsed().as_secs_f64(), result)
+    Clock::Core.time(work)
 }
 
 /// The value below which a share of all values lies, by the nearest rank; 0 of none.

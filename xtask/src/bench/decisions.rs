@@ -1,6 +1,6 @@
 //! Decisions by information gain, against the equations as printed and against themselves.
 
-use super::clock::{median, quantile, timed};
+use super::clock::{Clock, median, quantile, timed};
 use super::situation::{SEED, Situation};
 use super::table::{Row, Table, duration};
 use super::{Measuring, tiles};
@@ -16,10 +16,16 @@ const SPACING: f64 = 1.5;
 /// … and lie in the lower part of it.
 const EXPLORED: f64 = 0.7;
 
-/// IG with every cell for ever a reason to measure: every reachable cell is a candidate.
-fn for_ever(config: &Config) -> Config {
+/// The configuration with the strategy IG.
+fn with_gain(config: &Config) -> Config {
     let mut config = config.clone();
     config.planner.strategy = Strategy::Ig;
+    config
+}
+
+/// IG with every cell for ever a reason to measure: every reachable cell is a candidate.
+fn for_ever(config: &Config) -> Config {
+    let mut config = with_gain(config);
     config.planner.scan_spacing = 0.0;
     config.planner.entropy_threshold = 0.0;
     config.planner.stall_rule = StallRule::Literal;
@@ -42,9 +48,9 @@ pub(super) fn small(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
     let side = extent.small;
     progress.say(&format!("{side} × {side} cells: exploring a part of it …"));
     let world = tiles::offices(side, config.sonar.surface)?;
-    let (mission, run) = explored(&world, config, extent.scans)?;
+    let (mission, run) = explored(&world, &with_gain(config), extent.scans)?;
     let for_ever = for_ever(config);
-    let mut situation = Situation::new(&world, &mission, &for_ever)?;
+    let mut situation = Situation::new(&world, &mission, &for_ever, Clock::Core)?;
     situation.follow(&run);
 
     progress.say("every E[I], nothing cached …");
@@ -99,7 +105,7 @@ pub(super) fn large(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
     let limits = Limits { while_driving: None, max_scans: None };
     let mission = Mission::new(&world, config, None, limits)?;
     let for_ever = for_ever(config);
-    let mut situation = Situation::new(&world, &mission, &for_ever)?;
+    let mut situation = Situation::new(&world, &mission, &for_ever, Clock::Core)?;
     for point in places(&world, config.robot.radius) {
         situation.visit(point);
     }
@@ -184,9 +190,8 @@ pub(super) fn office(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
     progress.say("decisions in the office …");
     let world = tiles::office(config.sonar.surface)?;
     let (mission, run) = explored(&world, config, extent.scans.min(40))?;
-    let mut config = (*config).clone();
-    config.planner.strategy = Strategy::Ig;
-    let mut situation = Situation::new(&world, &mission, &config)?;
+    let config = with_gain(config);
+    let mut situation = Situation::new(&world, &mission, &config, Clock::Wall)?;
     situation.follow(&run);
     let (_, decision) = situation.choose();
     let decision = decision.context("nothing to decide")?;

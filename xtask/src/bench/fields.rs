@@ -135,8 +135,12 @@ pub(super) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
     Ok(())
 }
 
-/// The largest difference of lengths in cells from our field \[m\].
+/// The largest difference of lengths in cells from our field \[m\]; infinite if not the same
+/// cells are reached.
 fn largest_difference(field: &TravelCosts, lengths: Vec<(usize, f64)>) -> f64 {
+    if lengths.len() != field.reached().count() {
+        return f64::INFINITY;
+    }
     let difference = |(index, length): (usize, f64)| {
         field.cost(index).map_or(f64::INFINITY, |cost| (cost - 0.1 * length).abs())
     };

@@ -1,6 +1,6 @@
 //! A robot that knows a part of a world, with the clock on its planner.
 
-use super::clock::timed;
+use super::clock::Clock;
 use anyhow::{Context, Result};
 use covmap::{Cell, CoverageMap, Grid};
 use covmap_explore::{Config, Mission, Robot, Run, SimulatedRobot};
@@ -19,6 +19,7 @@ pub(super) struct Situation<'a> {
     model: SensorModel,
     stencil: Stencil,
     heading: f64,
+    clock: Clock,
     grid: Grid,
     pub(super) map: CoverageMap,
     pub(super) planner: Planner,
@@ -27,7 +28,12 @@ pub(super) struct Situation<'a> {
 
 impl<'a> Situation<'a> {
     /// A robot at the start of a mission. It plans as `config` says.
-    pub(super) fn new(world: &'a World, mission: &Mission, config: &'a Config) -> Result<Self> {
+    pub(super) fn new(
+        world: &'a World,
+        mission: &Mission,
+        config: &'a Config,
+        clock: Clock,
+    ) -> Result<Self> {
         let (_, model) = config.build()?;
         let heading = mission.start.rotation.angle();
         let (outside, radius) = (&mission.outside, config.robot.radius);
@@ -39,6 +45,7 @@ impl<'a> Situation<'a> {
             map: CoverageMap::new(mission.grid, config.model.bins)?,
             planner: Planner::new(&config.planner, &model, outside, radius, heading)?,
             heading,
+            clock,
             grid: mission.grid,
             model,
             at: start.context("the start lies in the grid")?,
@@ -82,7 +89,7 @@ impl<'a> Situation<'a> {
 
     /// Decides. Returns how long that took \[s\].
     pub(super) fn choose(&mut self) -> (f64, Option<Decision>) {
-        timed(|| self.planner.choose(&self.map, self.at))
+        self.clock.time(|| self.planner.choose(&self.map, self.at))
     }
 
     /// E\[I\] of a view-point by the equations as printed.
@@ -98,7 +105,7 @@ impl<'a> Situation<'a> {
 
     fn moved(&mut self, from: Point2<f64>, to: Point2<f64>) -> f64 {
         let changes = integrate_body(&mut self.map, from, to, self.config.robot.radius);
-        timed(|| self.planner.body_moved(&self.map, from, to, &changes)).0
+        self.clock.time(|| self.planner.body_moved(&self.map, from, to, &changes)).0
     }
 
     fn scan(&mut self) -> f64 {
@@ -109,6 +116,6 @@ impl<'a> Situation<'a> {
 
     fn take_over(&mut self, scan: &Scan) -> f64 {
         let changes = integrate(&self.model, &mut self.map, scan);
-        timed(|| self.planner.observe(&self.map, scan, &changes)).0
+        self.clock.time(|| self.planner.observe(&self.map, scan, &changes)).0
     }
 }
