@@ -119,7 +119,9 @@ pub(super) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
 
     let same = petgraph().into_iter().map(|(n, d)| (n.index(), d)).collect::<Vec<_>>();
     let difference = largest_difference(&field, same);
-    let same = pathfinding().into_iter().map(|(n, (_, d))| (n as usize, d.0)).collect();
+    // It leaves out the start.
+    let others = pathfinding().into_iter().map(|(n, (_, d))| (n as usize, d.0));
+    let same = others.chain([(from as usize, 0.0)]).collect();
     let difference = difference.max(largest_difference(&field, same));
     let what = format!("a distance field on {side} × {side} cells, steps of 1 and √2");
     let mut row = |name: &str, (ours, other): (f64, f64)| {
