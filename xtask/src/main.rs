@@ -5,6 +5,7 @@
 #![allow(clippy::print_stdout, reason = "a program talks to its user")]
 
 mod arguments;
+mod bench;
 mod compare;
 mod csv_file;
 mod explain;
@@ -49,6 +50,7 @@ fn main() -> ExitCode {
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Survey(arguments) => survey::run(&arguments),
+        Command::Bench(arguments) => bench::run(&arguments),
     };
     done.unwrap_or_else(|error| {
         say::error(&error);

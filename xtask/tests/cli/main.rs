@@ -3,6 +3,7 @@
 
 mod bad_input;
 mod bad_maps;
+mod bench;
 mod explain;
 mod explore;
 mod fit;

@@ -1,0 +1,92 @@
+//! `bench`: how fast it is, as ratios that are measured in one run.
+//!
+//! A ratio is measured on one core, against something that gives the same answers, by the time
+//! that the core computes: what else a machine does hardly changes it. Nothing is asserted of
+//! a time.
+
+mod clock;
+mod decisions;
+mod fields;
+mod firing;
+mod integrating;
+mod literal;
+mod situation;
+mod table;
+mod tiles;
+
+use crate::arguments::Bench;
+use crate::input;
+use crate::progress::Progress;
+use crate::say;
+use anyhow::Result;
+use covmap_explore::Config;
+use std::process::ExitCode;
+use table::Table;
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Extent {
+    /// Cells along a side of the small map, and of the large one.
+    small: u32,
+    large: u32,
+    /// Scans of the exploration that the small map is of.
+    scans: usize,
+    /// View-points that the literal equations are evaluated at.
+    sample: usize,
+    /// Decisions of which the median is taken: small map, large map, office.
+    small_decisions: usize,
+    large_decisions: usize,
+    office_decisions: usize,
+    /// Rounds of the other races.
+    rounds: usize,
+}
+
+const FULL: Extent = Extent {
+    small: 200,
+    large: 1000,
+    scans: 250,
+    sample: 120,
+    small_decisions: 30,
+    large_decisions: 8,
+    office_decisions: 100,
+    rounds: 5,
+};
+
+const QUICK: Extent = Extent {
+    small: 100,
+    large: 200,
+    scans: 25,
+    sample: 8,
+    small_decisions: 5,
+    large_decisions: 3,
+    office_decisions: 10,
+    rounds: 1,
+};
+
+/// What is measured, with where to say how far it is.
+pub(crate) struct Measuring<'a> {
+    config: &'a Config,
+    extent: Extent,
+    progress: &'a Progress,
+}
+
+pub(crate) fn run(arguments: &Bench) -> Result<ExitCode> {
+    let (config, _) = input::config(None)?;
+    let extent = if arguments.quick { QUICK } else { FULL };
+    let progress = Progress::new(false);
+    let bench = Measuring { config: &config, extent, progress: &progress };
+    let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    let mut table = one_core.install(|| -> Result<Table> {
+        let mut table = Table::default();
+        decisions::small(&bench, &mut table)?;
+        decisions::large(&bench, &mut table)?;
+        integrating::compare(&bench, &mut table)?;
+        fields::compare(&bench, &mut table)?;
+        firing::compare(&bench, &mut table)?;
+        Ok(table)
+    })?;
+    decisions::office(&bench, &mut table)?;
+    progress.finish();
+    say::line(table);
+    Ok(ExitCode::SUCCESS)
+}
