@@ -139,15 +139,20 @@ impl SensorModel {
                 (0.0, p.sigma_out.at(cell_distance, p.no_echo.range), p.no_echo.gamma)
             }
         };
+        // exp ∘ log is four times as fast as libm's pow, which would be most of integrating.
+        let tempered = |density: f64| match p.tempering {
+            exponent if exponent < 1.0 => libm::exp(exponent * libm::log(density)),
+            _ => density,
+        };
+        // So far from the mean that the Gaussian is below half a unit in the last place of γ,
+        // the density is γ, to the last bit: that takes 6 % off a fit.
+        let far = -2.0 * libm::log(gamma * sigma * f64::EPSILON / 8.0);
+        let tail = tempered(gamma);
         let mut sum = 0.0;
         for (bin, o) in out.iter_mut().enumerate() {
-            let density = gamma + normal(mu, sigma, bin_coverage(bin, p.bins));
-            // exp ∘ log is four times as fast as libm's pow, which would be most of integrating.
-            *o = if p.tempering < 1.0 {
-                libm::exp(p.tempering * libm::log(density))
-            } else {
-                density
-            };
+            let x = bin_coverage(bin, p.bins);
+            let z = (x - mu) / sigma;
+            *o = if z * z > far { tail } else { tempered(gamma + normal(mu, sigma, x)) };
             sum += *o;
         }
         out.iter_mut().for_each(|o| *o /= sum);
