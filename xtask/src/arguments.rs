@@ -186,7 +186,7 @@ pub(crate) enum Command {
     Fit(Fit),
     /// Compares coverage maps with other methods, tuned alike, on truth that they were not fitted to.
     #[command(after_help = COMPARE_EXAMPLES)]
-    Compare(Compare),
+    Compare(Fit),
     /// Finds the walls of a building in the laser scans of a log: the truth to score maps with.
     #[command(after_help = SURVEY_EXAMPLES)]
     Survey(Survey),
@@ -316,19 +316,6 @@ pub(crate) struct Model {
 #[derive(Debug, Args)]
 pub(crate) struct Fit {
     /// What is fitted to what (.ron)
-    #[arg(value_name = "FIT.ron")]
-    pub(crate) file: PathBuf,
-    /// Where the results go
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: PathBuf,
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Compare {
-    /// What is compared on what (.ron, as for `fit`)
     #[arg(value_name = "FIT.ron")]
     pub(crate) file: PathBuf,
     /// Where the results go

@@ -1,7 +1,7 @@
 //! `compare`: mapping methods against the same truth, each tuned and calibrated alike.
 
-use crate::arguments::Compare;
-use crate::fit_file::{FitFile, Source};
+use crate::arguments::Fit;
+use crate::fit_file::{FitFile, Source, examples};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{csv_file, interrupt, say};
@@ -9,24 +9,23 @@ use anyhow::{Result, bail};
 use covmap_explore::Config;
 use covmap_fit::{
     Axis, BetaCounting, ComparisonSettings, Contender, Crm, Estimate, Example, LogOdds, Method,
-    MethodParameter, Row, TuneSettings, Update, compare, tune,
+    MethodParameter, Parameter, Row, TuneSettings, Update, compare, tune,
 };
 use covmap_io::{OutputFolder, write_json};
 use covmap_world::{stream, uniform};
 use serde::Serialize;
 use std::io::Write;
-use std::ops::ControlFlow;
 use std::process::ExitCode;
 
 /// The parameters that the paper fits: those of Eq. (9).
-const PAPER: [covmap_fit::Parameter; 7] = [
-    covmap_fit::Parameter::GammaBase,
-    covmap_fit::Parameter::GammaPerCellDistance,
-    covmap_fit::Parameter::GammaPerRange,
-    covmap_fit::Parameter::SigmaOutBase,
-    covmap_fit::Parameter::SigmaOutPerCellDistance,
-    covmap_fit::Parameter::SigmaOutPerRange,
-    covmap_fit::Parameter::SigmaIn,
+const PAPER: [Parameter; 7] = [
+    Parameter::GammaBase,
+    Parameter::GammaPerCellDistance,
+    Parameter::GammaPerRange,
+    Parameter::SigmaOutBase,
+    Parameter::SigmaOutPerCellDistance,
+    Parameter::SigmaOutPerRange,
+    Parameter::SigmaIn,
 ];
 
 /// Fitted on some examples, checked on others.
@@ -35,15 +34,8 @@ struct Direction {
     fitted_on: Vec<String>,
     checked_on: Vec<String>,
     /// How each contender was tuned.
-    contenders: Vec<Tuned>,
+    contenders: Vec<Contender>,
     rows: Vec<Row>,
-}
-
-#[derive(Serialize)]
-struct Tuned {
-    name: String,
-    raw: Method,
-    calibrated: Method,
 }
 
 /// A method before it is tuned.
@@ -53,23 +45,16 @@ struct Entry {
     axes: Vec<Axis<MethodParameter>>,
 }
 
-pub(crate) fn run(arguments: &Compare) -> Result<ExitCode> {
+pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
     let (file, config, name) = FitFile::read(&arguments.file)?;
     if file.held_out.is_empty() {
         bail!("{}: held_out: a comparison needs at least one entry", arguments.file.display());
     }
-    for source in file.training.iter().chain(&file.held_out) {
-        source.check(&arguments.file, (&config, &name))?;
-    }
     let folder = OutputFolder::create(arguments.out.clone())?;
     let mut progress = Progress::new(arguments.quiet);
-    let examples = |sources: &[Source]| -> Result<Vec<Example>> {
-        let example = |source: &Source| {
-            progress.say(&format!("reading {}", source.file().display()));
-            source.example(&arguments.file, (&config, &name), &mut || interrupt.next())
-        };
-        sources.iter().map(example).collect()
+    let examples = |sources: &[Source]| {
+        examples(sources, &arguments.file, (&config, &name), (&progress, &interrupt))
     };
     let (a, b) = (examples(&file.training)?, examples(&file.held_out)?);
     let mut directions = Vec::new();
@@ -140,7 +125,7 @@ fn direction(
             let report = |_: Option<f64>| {
                 count += 1;
                 progress.tell(|| format!("{}: {count} of {} maps", entry.name, file.evaluations));
-                interrupt.next()
+                interrupt.flow()
             };
             let tuned = tune(
                 &entry.method,
@@ -161,13 +146,7 @@ fn direction(
     let mut random = stream(file.seed, "blocks", 0);
     let rows = compare(&contenders, training, test, &settings, || uniform(&mut random))?;
     let names = |examples: &[Example]| examples.iter().map(|e| e.name.clone()).collect();
-    let kept = |c: Contender| Tuned { name: c.name, raw: c.raw, calibrated: c.calibrated };
-    Ok(Direction {
-        fitted_on: names(training),
-        checked_on: names(test),
-        contenders: contenders.into_iter().map(kept).collect(),
-        rows,
-    })
+    Ok(Direction { fitted_on: names(training), checked_on: names(test), contenders, rows })
 }
 
 const COLUMNS: &str = "fitted_on,method,calibrated,class,cells,log_likelihood,log_likelihood_low,\
@@ -240,12 +219,5 @@ fn tell(direction: &Direction) {
             partial.error.value,
             partial.central_90.value
         ));
-    }
-}
-
-impl Interrupt {
-    /// What a watcher answers.
-    fn next(&self) -> ControlFlow<()> {
-        if self.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

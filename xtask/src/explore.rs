@@ -89,10 +89,7 @@ fn watch(
         if failed.is_none() {
             failed = trace.event(event).err();
         }
-        if interrupt.is_pressed() || failed.is_some() {
-            return ControlFlow::Break(());
-        }
-        ControlFlow::Continue(())
+        if failed.is_some() { ControlFlow::Break(()) } else { interrupt.flow() }
     })?;
     failed.map_or(Ok(run), |error| Err(error.into()))
 }

@@ -2,10 +2,11 @@
 
 use crate::arguments::Fit;
 use crate::fit_charts;
-use crate::fit_file::{FitFile, Source};
+use crate::fit_file::{FitFile, Source, examples};
 use crate::interrupt::{self, Interrupt};
+use crate::progress::Progress;
 use crate::{input, say};
-use anyhow::{Result, bail};
+use anyhow::{Result, anyhow};
 use covmap_explore::Config;
 use covmap_fit::{
     ClassScore, Evaluation, Example, ExampleScore, FitSettings, Fitted, Profile, SearchSettings,
@@ -14,13 +15,9 @@ use covmap_fit::{
 use covmap_io::{OutputFolder, write_json, write_ron};
 use covmap_model::ModelParameters;
 use covmap_world::{stream, uniform};
-use indicatif::{ProgressBar, ProgressDrawTarget};
-use rayon::prelude::*;
 use serde::Serialize;
 use statrs::distribution::{ContinuousCDF, StudentsT};
-use std::io::IsTerminal;
-use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 /// All that `fit.json` holds.
@@ -59,19 +56,17 @@ struct Paired {
 pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
     let (file, config, name) = FitFile::read(&arguments.file)?;
-    for source in file.training.iter().chain(&file.held_out) {
-        source.check(&arguments.file, (&config, &name))?;
-    }
     let folder = OutputFolder::create(arguments.out.clone())?;
-    let line = progress(arguments.quiet);
-    let examples =
-        |sources: &[Source]| simulate(sources, arguments, (&config, &name), &line, &interrupt);
+    let mut progress = Progress::new(arguments.quiet);
+    let examples = |sources: &[Source]| {
+        examples(sources, &arguments.file, (&config, &name), (&progress, &interrupt))
+    };
     let (training, held_out) = (examples(&file.training)?, examples(&file.held_out)?);
     if interrupt.is_pressed() {
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     }
-    let fitted = search(&file, &config, &training, &line, &interrupt)?;
-    line.finish_and_clear();
+    let fitted = search(&file, &config, &training, &mut progress, &interrupt)?;
+    progress.finish();
 
     let compare = |name: &str, examples: &[Example]| -> Result<Compared> {
         let before = score(examples, &config.model)?;
@@ -100,36 +95,11 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn progress(quiet: bool) -> ProgressBar {
-    let watched = !quiet && std::io::stderr().is_terminal();
-    let target = if watched { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
-    ProgressBar::with_draw_target(None, target)
-        .with_style(indicatif::ProgressStyle::default_spinner())
-}
-
-/// Explores the worlds of some examples, side by side.
-fn simulate(
-    sources: &[Source],
-    arguments: &Fit,
-    config: (&Config, &PathBuf),
-    line: &ProgressBar,
-    interrupt: &Interrupt,
-) -> Result<Vec<Example>> {
-    let example = |source: &Source| {
-        source.example(&arguments.file, (config.0, config.1), &mut || {
-            line.set_message(format!("reading {}", source.file().display()));
-            line.tick();
-            if interrupt.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-        })
-    };
-    sources.par_iter().map(example).collect()
-}
-
 fn search(
     file: &FitFile,
     config: &Config,
     training: &[Example],
-    line: &ProgressBar,
+    progress: &mut Progress,
     interrupt: &Interrupt,
 ) -> Result<Fitted> {
     let settings = FitSettings {
@@ -148,19 +118,17 @@ fn search(
         |evaluation| {
             count += 1;
             best = evaluation.log_likelihood.unwrap_or(best).max(best);
-            line.set_message(format!(
-                "search {} of {} · {count} evaluations · log-likelihood {best:.4} nats a cell",
-                evaluation.start + 1,
-                file.starts
-            ));
-            line.tick();
-            if interrupt.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            progress.tell(|| {
+                format!(
+                    "search {} of {} · {count} evaluations · log-likelihood {best:.4} nats a cell",
+                    evaluation.start + 1,
+                    file.starts
+                )
+            });
+            interrupt.flow()
         },
     );
-    match fitted {
-        Ok(fitted) => Ok(fitted),
-        Err(error) => bail!("the fit cannot begin: {error}"),
-    }
+    fitted.map_err(|error| anyhow!("the fit cannot begin: {error}"))
 }
 
 /// The paired differences of the held-out examples; `None` for fewer than two.

@@ -1,6 +1,8 @@
 //! The file that says what is fitted to what, and the examples that it describes.
 
 use crate::input::{self, about};
+use crate::interrupt::Interrupt;
+use crate::progress::Progress;
 use crate::recorded::Recorded;
 use anyhow::{Result, bail};
 use covmap_explore::{Config, Limits, Mission, SimulatedRobot, Truth, explore};
@@ -10,6 +12,7 @@ use covmap_plan::Strategy;
 use covmap_sonar::SonarRing;
 use covmap_world::{Scenario, World};
 use nalgebra::Vector2;
+use rayon::prelude::*;
 use serde::Deserialize;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -83,8 +86,25 @@ impl FitFile {
         if !(1..=1000).contains(&file.starts) || !(1..=1_000_000).contains(&file.evaluations) {
             bail!("{}: starts must lie in 1..=1000, evaluations in 1..=1000000", path.display());
         }
+        for source in file.training.iter().chain(&file.held_out) {
+            source.check(path, (&config, &name))?;
+        }
         Ok((file, config, name))
     }
+}
+
+/// The examples of some sources in the fit's file `path`, made side by side.
+pub(crate) fn examples(
+    sources: &[Source],
+    path: &Path,
+    config: (&Config, &Path),
+    (progress, interrupt): (&Progress, &Interrupt),
+) -> Result<Vec<Example>> {
+    let example = |source: &Source| {
+        progress.say(&format!("reading {}", source.file().display()));
+        source.example(path, config, &mut || interrupt.flow())
+    };
+    sources.par_iter().map(example).collect()
 }
 
 /// A file that is named in another one.
@@ -94,7 +114,7 @@ pub(crate) fn beside(path: &Path, named: &Path) -> PathBuf {
 
 impl Source {
     /// The file that it is made from.
-    pub(crate) fn file(&self) -> &Path {
+    fn file(&self) -> &Path {
         match self {
             Self::Simulated(source) => &source.scenario,
             Self::Recorded(source) => &source.log,
@@ -102,7 +122,7 @@ impl Source {
     }
 
     /// Finds what is wrong with it before any work is done.
-    pub(crate) fn check(&self, path: &Path, config: (&Config, &Path)) -> Result<()> {
+    fn check(&self, path: &Path, config: (&Config, &Path)) -> Result<()> {
         match self {
             Self::Simulated(source) => source.task(path, config).map(|_| ()),
             Self::Recorded(source) => source.check(path),
@@ -110,7 +130,7 @@ impl Source {
     }
 
     /// The scans and the truth.
-    pub(crate) fn example(
+    fn example(
         &self,
         path: &Path,
         config: (&Config, &Path),

@@ -1,5 +1,6 @@
 //! Ctrl-C: the first ends the run in good order, the second at once.
 
+use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -25,5 +26,10 @@ impl Interrupt {
 
     pub(crate) fn is_pressed(&self) -> bool {
         self.0.load(Ordering::SeqCst)
+    }
+
+    /// What a watcher answers: to go on until it is pressed.
+    pub(crate) fn flow(&self) -> ControlFlow<()> {
+        if self.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }

@@ -5,12 +5,12 @@ use crate::input::about;
 use crate::map_pictures::MapPictures;
 use crate::mapper::{Log, Mapper, Stride, Survey};
 use crate::progress::Progress;
-use crate::{input, say};
+use crate::{input, results, say};
 use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_explore::Config;
 use covmap_io::log::{LogOptions, Sensor, Skipped};
-use covmap_io::{CoverageThresholds, OutputFolder, save_map_server, write_json};
+use covmap_io::{OutputFolder, write_json};
 use covmap_model::{Footprint, FootprintRule, SensorModel};
 use covmap_plan::BodyEvidence;
 use covmap_sonar::{Beam, SonarRing};
@@ -195,10 +195,7 @@ fn write(
     summary: &MapSummary,
     explored: f64,
 ) -> Result<()> {
-    let belief = folder.path("belief.bin");
-    std::fs::write(&belief, mapper.map.to_bytes()).map_err(about(&belief))?;
-    let likely = mapper.map.maximum_likelihood();
-    save_map_server(folder.partial(), "map", &likely, CoverageThresholds::default())?;
+    results::write_map(folder, &mapper.map)?;
     let pictures = MapPictures { mapper, summary, explored };
     pictures.coverage().save(folder.path("coverage.png"))?;
     pictures.entropy().save(folder.path("entropy.png"))?;

@@ -3,7 +3,7 @@
 use crate::progress::Progress;
 use crate::trail::Trail;
 use anyhow::{Result, anyhow, bail};
-use covmap::{CoverageMap, Grid};
+use covmap::{CoverageMap, Grid, GridError};
 use covmap_io::log::{LogFrame, LogOptions, LogReader, Skipped};
 use covmap_model::{OccupancyGrid, OccupancyParameters, SensorModel, integrate, integrate_body};
 use covmap_sonar::SonarRing;
@@ -95,6 +95,17 @@ impl Log {
     }
 }
 
+/// The grid of a rectangle, with corners at multiples of the resolution.
+pub(crate) fn grid_around(
+    low: Point2<f64>,
+    high: Point2<f64>,
+    resolution: f64,
+    margin: usize,
+) -> Result<Grid, GridError> {
+    let corner = low.map(|v| (v / resolution).floor() * resolution);
+    Grid::covering(corner, high - corner, resolution, margin)
+}
+
 impl Survey {
     /// The grid of all cells that a model can learn of from where the robot was, with corners
     /// at multiples of the resolution.
@@ -104,9 +115,7 @@ impl Survey {
             |most: f64, beam: &covmap_sonar::Beam| most.max(beam.pose.translation.vector.norm());
         let reach = model.max_reach() + self.ring.beams().iter().fold(0.0, outermost);
         let around = Vector2::repeat(reach.max(radius));
-        let low = (self.low - around).map(|v| (v / r).floor() * r);
-        let size = self.high + around - low;
-        Grid::covering(low, size, r, MARGIN).map_err(|error| {
+        grid_around(self.low - around, self.high + around, r, MARGIN).map_err(|error| {
             let [a, b] = [self.low, self.high];
             anyhow!(
                 "{}: the robot was between ({:.1}, {:.1}) and ({:.1}, {:.1}): {error}",

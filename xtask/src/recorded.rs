@@ -2,9 +2,9 @@
 
 use crate::fit_file::beside;
 use crate::input::{self, about};
-use crate::mapper::Stride;
+use crate::mapper::{Stride, grid_around};
 use anyhow::{Result, bail};
-use covmap::{CoverageMap, Grid, Raster};
+use covmap::{CoverageMap, Raster};
 use covmap_explore::Config;
 use covmap_fit::Example;
 use covmap_io::log::{LogOptions, LogReader, Sensor, Skipped};
@@ -57,9 +57,6 @@ pub(crate) fn frames(
         let frame = frame?;
         scans.push((frame.ring, frame.scan));
     }
-    if scans.is_empty() {
-        bail!("{}: holds no scan", log.display());
-    }
     Ok(Frames { scans, skipped: reader.skipped().clone() })
 }
 
@@ -90,10 +87,8 @@ impl Recorded {
         let places = scans.iter().map(|scan| Point2::from(scan.pose.translation.vector));
         let (low, high) =
             places.clone().fold((first, first), |(low, high), at| (low.inf(&at), high.sup(&at)));
-        let r = config.resolution;
-        let corner = (low - around).map(|v| (v / r).floor() * r);
-        let size = high + around - corner;
-        let grid = Grid::covering(corner, size, r, 0).map_err(about(&log))?;
+        let grid = grid_around(low - around, high + around, config.resolution, 0);
+        let grid = grid.map_err(about(&log))?;
         input::check_size(&grid, config).map_err(about(&log))?;
 
         let survey: Survey = read_ron(&truth)?;
@@ -126,20 +121,16 @@ fn counted(
     config: &Config,
     coverage: &Raster<f64>,
     seen: &Raster<bool>,
-    places: impl Iterator<Item = Point2<f64>>,
+    places: impl Iterator<Item = Point2<f64>> + Clone,
 ) -> Result<Raster<bool>> {
     let grid = *coverage.grid();
     let solid = Raster::from_fn(grid, |cell| coverage.get(cell).is_some_and(|c| *c >= OPAQUE));
     let world = World::from_raster("survey", &solid, Surface::Rough)?;
-    let mut from = Raster::filled(grid, false);
     let mut body = CoverageMap::new(grid, config.model.bins)?;
-    for at in places {
+    for at in places.clone() {
         integrate_body(&mut body, at, at, config.robot.radius);
-        if let Some(here) = grid.cell_at(at).and_then(|cell| from.get_mut(cell)) {
-            *here = true;
-        }
     }
-    let sight = world.cells_seen(&grid, coverage, &from, config.model.usable_range);
+    let sight = world.cells_seen_from(&grid, coverage, places, config.model.usable_range);
     Ok(Raster::from_fn(grid, |cell| {
         let is = |raster: &Raster<bool>| raster.get(cell) == Some(&true);
         is(seen) && !body.is_pinned(cell) && (is(&sight.in_sight) || is(&sight.first_solid))

@@ -4,8 +4,18 @@ use crate::explore::Task;
 use crate::input::about;
 use crate::pictures::Pictures;
 use anyhow::Result;
+use covmap::CoverageMap;
 use covmap_explore::{Run, Summary, Truth};
 use covmap_io::{CoverageThresholds, OutputFolder, save_map_server, write_json};
+
+/// Writes a map: the whole posterior, and what is most likely for map_server.
+pub(crate) fn write_map(folder: &OutputFolder, map: &CoverageMap) -> Result<()> {
+    let belief = folder.path("belief.bin");
+    std::fs::write(&belief, map.to_bytes()).map_err(about(&belief))?;
+    let likely = map.maximum_likelihood();
+    save_map_server(folder.partial(), "map", &likely, CoverageThresholds::default())?;
+    Ok(())
+}
 
 /// Writes everything but the trace, and returns the numbers.
 pub(crate) fn write(
@@ -21,10 +31,7 @@ pub(crate) fn write(
     let strategy = &mission.config.planner.strategy;
     let summary = Summary::new(world.name(), strategy, *seed, run, &score, seconds, hash);
 
-    let belief = folder.path("belief.bin");
-    std::fs::write(&belief, run.map.to_bytes()).map_err(about(&belief))?;
-    let likely = run.map.maximum_likelihood();
-    save_map_server(folder.partial(), "map", &likely, CoverageThresholds::default())?;
+    write_map(folder, &run.map)?;
     let pictures = Pictures { mission, run, truth: &truth, summary: &summary };
     pictures.coverage().save(folder.path("coverage.png"))?;
     pictures.entropy().save(folder.path("entropy.png"))?;

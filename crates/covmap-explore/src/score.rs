@@ -54,15 +54,9 @@ impl Truth {
     /// trajectory, plus one solid layer; not those that the robot's body pinned.
     pub fn scored_cells(&self, world: &World, mission: &Mission, run: &Run) -> Vec<Cell> {
         let grid = mission.grid;
-        let mut from = Raster::filled(grid, false);
-        for scan in &run.scans {
-            let cell = grid.cell_at(scan.pose.translation.vector.into());
-            if let Some(here) = cell.and_then(|cell| from.get_mut(cell)) {
-                *here = true;
-            }
-        }
+        let places = run.scans.iter().map(|scan| scan.pose.translation.vector.into());
         let range = mission.config.model.usable_range;
-        let seen = world.cells_seen(&grid, &self.coverage, &from, range);
+        let seen = world.cells_seen_from(&grid, &self.coverage, places, range);
         let counts = |i: usize| seen.in_sight[i] || seen.first_solid[i];
         let cells = (0..grid.len()).filter(|i| counts(*i)).map(|i| grid.cell(i));
         cells.filter(|cell| !run.map.is_pinned(*cell)).collect()

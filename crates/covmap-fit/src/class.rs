@@ -60,4 +60,13 @@ impl<T> ByClass<T> {
             Some(Class::Solid) => &self.solid,
         }
     }
+
+    /// The value of a class.
+    pub(crate) fn of_class_mut(&mut self, class: Class) -> &mut T {
+        match class {
+            Class::Free => &mut self.free,
+            Class::Partial => &mut self.partial,
+            Class::Solid => &mut self.solid,
+        }
+    }
 }

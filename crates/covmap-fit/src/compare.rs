@@ -6,16 +6,16 @@ mod calibration;
 pub use blocks::trajectory_blocks;
 pub use calibration::{CALIBRATION_LEVELS, CalibrationTable};
 
-use crate::example::mean;
+use crate::example::{measures, truths};
 use crate::{ByClass, Class, Example, Method, Weighting};
 use blocks::{interval, resamples};
-use covmap::{LIKELIHOOD_FLOOR, crps, log_likelihood, randomised_pit};
+use covmap::randomised_pit;
 use covmap_model::ModelError;
 use rayon::prelude::*;
 use serde::Serialize;
 
 /// A method with its name, ready to be compared: tuned, if it is to be.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Contender {
     /// What the rows call it.
     pub name: String,
@@ -125,9 +125,9 @@ pub fn compare(
     let cells = TestCells::new(test, settings.blocks, &mut uniform);
     let resamples = resamples(cells.blocks, settings.resamples, &mut uniform);
     let both = |contender: &Contender| -> Result<[Vec<Sums>; 2], ModelError> {
-        let raw = cells.sums(&posteriors(&contender.raw, test)?, |p| p);
+        let raw = cells.sums(&contender.raw.posteriors_of(test)?, |p| p);
         let table = table(&contender.calibrated, training)?;
-        let posteriors = posteriors(&contender.calibrated, test)?;
+        let posteriors = contender.calibrated.posteriors_of(test)?;
         Ok([raw, cells.sums(&posteriors, |p| table.apply(p))])
     };
     let sums: Vec<[Vec<Sums>; 2]> = contenders.par_iter().map(both).collect::<Result<_, _>>()?;
@@ -147,15 +147,6 @@ pub fn compare(
     Ok(rows.collect())
 }
 
-fn posteriors(method: &Method, examples: &[Example]) -> Result<Vec<Vec<f64>>, ModelError> {
-    let each: Result<Vec<_>, _> = examples.par_iter().map(|e| method.posteriors(e)).collect();
-    Ok(each?.into_iter().flatten().collect())
-}
-
-fn truths(examples: &[Example]) -> impl Iterator<Item = f64> {
-    examples.iter().flat_map(|e| &e.truth).map(|(_, coverage)| *coverage)
-}
-
 /// The calibration table of a method from training examples.
 ///
 /// # Errors
@@ -164,9 +155,17 @@ fn truths(examples: &[Example]) -> impl Iterator<Item = f64> {
 /// # Panics
 /// If a scan does not fit the ring of its example.
 pub fn table(method: &Method, training: &[Example]) -> Result<CalibrationTable, ModelError> {
-    let posteriors = posteriors(method, training)?;
-    let cells = posteriors.iter().map(Vec::as_slice).zip(truths(training));
-    Ok(CalibrationTable::fit(cells, method.model.bins))
+    Ok(table_of(&method.posteriors_of(training)?, training, method.model.bins))
+}
+
+/// The calibration table of the posteriors of some examples.
+pub(crate) fn table_of(
+    posteriors: &[Vec<Vec<f64>>],
+    examples: &[Example],
+    bins: usize,
+) -> CalibrationTable {
+    let cells = posteriors.iter().flatten().map(Vec::as_slice);
+    CalibrationTable::fit(cells.zip(truths(examples)), bins)
 }
 
 /// A cell of the test examples.
@@ -196,6 +195,13 @@ struct Sum {
     measures: [f64; MEASURES],
 }
 
+impl Sum {
+    fn add(&mut self, measures: [f64; MEASURES]) {
+        self.cells += 1;
+        self.measures.iter_mut().zip(measures).for_each(|(sum, value)| *sum += value);
+    }
+}
+
 /// The sums of a block for all cells and for each class.
 type Sums = ByClass<Sum>;
 
@@ -222,31 +228,19 @@ impl TestCells {
     /// The sums of every block, for what `output` makes of each posterior.
     fn sums<'a>(
         &self,
-        posteriors: &'a [Vec<f64>],
+        posteriors: &'a [Vec<Vec<f64>>],
         output: impl Fn(&'a [f64]) -> &'a [f64],
     ) -> Vec<Sums> {
         let mut sums = vec![Sums::default(); self.blocks];
-        for (cell, posterior) in self.cells.iter().zip(posteriors) {
+        for (cell, posterior) in self.cells.iter().zip(posteriors.iter().flatten()) {
             let p = output(posterior);
             let pit = randomised_pit(p, cell.truth, cell.chance.0, cell.chance.1);
             let central = |level: f64| f64::from(u8::from((pit - 0.5).abs() <= 0.5 * level));
-            let measures = [
-                log_likelihood(p, cell.truth, LIKELIHOOD_FLOOR),
-                crps(p, cell.truth),
-                (mean(p) - cell.truth).abs(),
-                central(0.5),
-                central(0.9),
-            ];
+            let [likelihood, crps, error] = measures(p, cell.truth);
+            let measures = [likelihood, crps, error, central(0.5), central(0.9)];
             let block = &mut sums[cell.block];
-            let class = match Class::of(cell.truth) {
-                Class::Free => &mut block.free,
-                Class::Partial => &mut block.partial,
-                Class::Solid => &mut block.solid,
-            };
-            for sum in [class, &mut block.all] {
-                sum.cells += 1;
-                sum.measures.iter_mut().zip(measures).for_each(|(sum, value)| *sum += value);
-            }
+            block.of_class_mut(Class::of(cell.truth)).add(measures);
+            block.all.add(measures);
         }
         sums
     }
@@ -262,8 +256,10 @@ struct Estimates<'a> {
 
 impl Estimates<'_> {
     fn row(&self, name: &str, calibrated: bool, weighting: Weighting) -> Row {
-        let objective =
-            self.estimate(self.own.len() >= 2, |sums, drawn| objective(sums, drawn, weighting));
+        let objective = self.estimate(self.own.len() >= 2, |sums, drawn| {
+            let is_there = |class| sums.iter().any(|s| s.get(Some(class)).cells > 0);
+            weighting.mean(is_there, |class| average(sums, drawn, class, LOG_LIKELIHOOD))
+        });
         let classes = ByClass::from_fn(|class| {
             let estimate = |measure: usize| {
                 let with = self.own.iter().filter(|sums| sums.get(class).cells > 0).count();
@@ -319,21 +315,4 @@ fn average(
         total += times * sum.measures[measure];
     }
     (cells > 0.0).then(|| total / cells)
-}
-
-/// The mean log-likelihood by a weighting; `None` if no cell of one of its classes is drawn.
-fn objective(sums: &[Sums], drawn: Option<&[f64]>, weighting: Weighting) -> Option<f64> {
-    let of = |class| average(sums, drawn, class, LOG_LIKELIHOOD);
-    match weighting {
-        Weighting::Cells => of(None),
-        Weighting::Classes => {
-            let classes = [Class::Free, Class::Partial, Class::Solid].map(Some);
-            let is_there = |class: &Option<Class>| sums.iter().any(|s| s.get(*class).cells > 0);
-            let there = classes.into_iter().filter(is_there);
-            let means: Vec<f64> = there.map(of).collect::<Option<_>>()?;
-            #[allow(clippy::cast_precision_loss, reason = "at most 3")]
-            let mean = means.iter().sum::<f64>() / means.len() as f64;
-            (!means.is_empty()).then_some(mean)
-        }
-    }
 }

@@ -1,10 +1,10 @@
 //! What the model is fitted to: scans, and the truth of a fixed set of cells.
 
-use crate::Class;
+use crate::{ByClass, Class};
 use covmap::{Cell, CoverageMap, Grid, LIKELIHOOD_FLOOR, crps, log_likelihood};
 use covmap_model::{ModelError, ModelParameters, SensorModel, integrate};
 use covmap_sonar::{Scan, SonarRing};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 
 /// The scans of one trajectory, and the true coverage of some cells.
 ///
@@ -26,8 +26,7 @@ pub struct Example {
 }
 
 /// How well a map explains the cells of one class.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct ClassScore {
     /// How many cells.
     pub cells: usize,
@@ -40,18 +39,7 @@ pub struct ClassScore {
 }
 
 /// How well a map explains the truth: all cells, and those of each class.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ExampleScore {
-    /// All cells.
-    pub all: ClassScore,
-    /// Cells of coverage 0.
-    pub free: ClassScore,
-    /// Cells of a coverage between 0 and 1.
-    pub partial: ClassScore,
-    /// Cells of coverage 1.
-    pub solid: ClassScore,
-}
+pub type ExampleScore = ByClass<ClassScore>;
 
 impl Example {
     /// The map that a model builds from the scans.
@@ -59,50 +47,39 @@ impl Example {
     /// # Errors
     /// If the parameters make no model for the ring and the grid.
     pub fn map(&self, parameters: &ModelParameters) -> Result<CoverageMap, ModelError> {
-        let model = SensorModel::new(parameters, &self.ring, self.grid.resolution())?;
-        let mut map = CoverageMap::new(self.grid, parameters.bins)
-            .map_err(|_| ModelError::Bins(parameters.bins))?;
-        self.scans.iter().for_each(|scan| drop(integrate(&model, &mut map, scan)));
-        Ok(map)
+        self.map_of(&SensorModel::new(parameters, &self.ring, self.grid.resolution())?)
     }
 
-    /// How well the map that a model builds explains the truth.
-    ///
-    /// # Errors
-    /// As [`Example::map`].
-    pub fn score(&self, parameters: &ModelParameters) -> Result<ExampleScore, ModelError> {
-        let map = self.map(parameters)?;
-        Ok(ExampleScore::of(&self.truth, |cell| map.histogram(cell).probabilities().to_vec()))
+    pub(crate) fn map_of(&self, model: &SensorModel) -> Result<CoverageMap, ModelError> {
+        let bins = model.parameters().bins;
+        let mut map = CoverageMap::new(self.grid, bins).map_err(|_| ModelError::Bins(bins))?;
+        self.scans.iter().for_each(|scan| drop(integrate(model, &mut map, scan)));
+        Ok(map)
     }
 }
 
+/// The true coverages of the cells of some examples, in their order.
+pub(crate) fn truths(examples: &[Example]) -> impl Iterator<Item = f64> {
+    examples.iter().flat_map(|e| &e.truth).map(|(_, coverage)| *coverage)
+}
+
+/// What a cell's posterior is worth: log-likelihood, CRPS, and error of the expected coverage.
+pub(crate) fn measures(posterior: &[f64], truth: f64) -> [f64; 3] {
+    let likelihood = log_likelihood(posterior, truth, LIKELIHOOD_FLOOR);
+    [likelihood, crps(posterior, truth), (mean(posterior) - truth).abs()]
+}
+
 impl ExampleScore {
-    /// Scores the posterior of every cell against its truth.
-    pub fn of(truth: &[(Cell, f64)], posterior: impl Fn(Cell) -> Vec<f64>) -> Self {
-        Self::of_all(truth.iter().map(|(cell, coverage)| (posterior(*cell), *coverage)))
-    }
-
-    /// Scores posteriors, one for each cell of the truth, in its order.
-    pub(crate) fn of_posteriors(
-        truth: &[(Cell, f64)],
-        posteriors: impl Iterator<Item = impl AsRef<[f64]>>,
-    ) -> Self {
-        Self::of_all(posteriors.zip(truth.iter().map(|(_, coverage)| *coverage)))
-    }
-
-    fn of_all(cells: impl Iterator<Item = (impl AsRef<[f64]>, f64)>) -> Self {
+    /// Scores posteriors, each with the truth of its cell.
+    pub(crate) fn of(cells: impl Iterator<Item = (impl AsRef<[f64]>, f64)>) -> Self {
         let mut score = Self::default();
-        for (p, coverage) in cells {
-            let p = p.as_ref();
-            let class = match Class::of(coverage) {
-                Class::Free => &mut score.free,
-                Class::Partial => &mut score.partial,
-                Class::Solid => &mut score.solid,
-            };
+        for (posterior, coverage) in cells {
+            let [log_likelihood, crps, error] = measures(posterior.as_ref(), coverage);
+            let class = score.of_class_mut(Class::of(coverage));
             class.cells += 1;
-            class.log_likelihood += log_likelihood(p, coverage, LIKELIHOOD_FLOOR);
-            class.crps += crps(p, coverage);
-            class.error += (mean(p) - coverage).abs();
+            class.log_likelihood += log_likelihood;
+            class.crps += crps;
+            class.error += error;
         }
         let classes = [score.free, score.partial, score.solid];
         score.all = classes.iter().fold(ClassScore::default(), |sum, class| ClassScore {
@@ -123,11 +100,12 @@ impl ExampleScore {
 
     /// The score of all examples together, cell by cell, from that of each.
     pub(crate) fn pooled(scores: &[Self]) -> Self {
-        let pool = |class: fn(&Self) -> ClassScore| {
-            let cells: usize = scores.iter().map(|s| class(s).cells).sum();
+        Self::from_fn(|class| {
+            let each = || scores.iter().map(|score| score.get(class));
+            let cells: usize = each().map(|s| s.cells).sum();
             #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
             let weighted = |f: fn(&ClassScore) -> f64| {
-                let sum: f64 = scores.iter().map(|s| f(&class(s)) * class(s).cells as f64).sum();
+                let sum: f64 = each().map(|s| f(s) * s.cells as f64).sum();
                 sum / cells.max(1) as f64
             };
             ClassScore {
@@ -136,13 +114,7 @@ impl ExampleScore {
                 crps: weighted(|c| c.crps),
                 error: weighted(|c| c.error),
             }
-        };
-        Self {
-            all: pool(|s| s.all),
-            free: pool(|s| s.free),
-            partial: pool(|s| s.partial),
-            solid: pool(|s| s.solid),
-        }
+        })
     }
 }
 
@@ -160,9 +132,12 @@ mod tests {
     fn classes_are_scored_apart() {
         let truth = [(Cell::new(0, 0), 0.0), (Cell::new(1, 0), 0.5), (Cell::new(2, 0), 1.0)];
         let sure_of = |bin: usize| (0..11).map(|k| f64::from(u8::from(k == bin))).collect();
-        let right = ExampleScore::of(&truth, |cell| sure_of(usize::try_from(5 * cell.x).unwrap()));
+        let score = |posterior: &dyn Fn(Cell) -> Vec<f64>| {
+            ExampleScore::of(truth.iter().map(|(cell, coverage)| (posterior(*cell), *coverage)))
+        };
+        let right = score(&|cell| sure_of(usize::try_from(5 * cell.x).unwrap()));
         assert!(right.all.log_likelihood > -0.002 && right.all.error < 1e-12);
-        let free = ExampleScore::of(&truth, |_| sure_of(0));
+        let free = score(&|_| sure_of(0));
         assert_eq!((free.all.cells, free.partial.cells), (3, 1));
         assert!((free.partial.error - 0.5).abs() < 1e-12 && (free.solid.crps - 1.0).abs() < 1e-12);
         assert!(free.free.log_likelihood > -0.002 && free.all.log_likelihood < -6.0);

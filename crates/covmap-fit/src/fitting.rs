@@ -1,9 +1,10 @@
 //! The maximum of the likelihood, by local search from many starts.
 
-use crate::search::{SearchSettings, maximise};
-use crate::{Axis, AxisError, Example, ExampleScore, Parameter};
+use crate::search::{SearchSettings, higher, maximise, random_start};
+use crate::{
+    Axis, AxisError, Class, Example, ExampleScore, Method, Parameter, Update, score_method,
+};
 use covmap_model::{ModelError, ModelParameters};
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
@@ -83,15 +84,27 @@ pub enum FitError {
 impl Weighting {
     /// The mean log-likelihood \[nats\].
     pub fn objective(self, score: &ExampleScore) -> f64 {
+        let is_there = |class| score.get(Some(class)).cells > 0;
+        let mean = self.mean(is_there, |class| Some(score.get(class).log_likelihood));
+        mean.unwrap_or(0.0)
+    }
+
+    /// The mean of what `of` says of all cells (`None`) or of the classes that are there;
+    /// `None` if it says nothing of one of them, or there are none.
+    pub(crate) fn mean(
+        self,
+        is_there: impl Fn(Class) -> bool,
+        of: impl Fn(Option<Class>) -> Option<f64>,
+    ) -> Option<f64> {
         match self {
-            Self::Cells => score.all.log_likelihood,
+            Self::Cells => of(None),
             Self::Classes => {
-                let classes = [score.free, score.partial, score.solid];
-                let there = || classes.iter().filter(|class| class.cells > 0);
-                let sum: f64 = there().map(|class| class.log_likelihood).sum();
+                let classes = [Class::Free, Class::Partial, Class::Solid].into_iter();
+                let there = classes.filter(|class| is_there(*class)).map(Some);
+                let means: Vec<f64> = there.map(of).collect::<Option<_>>()?;
                 #[allow(clippy::cast_precision_loss, reason = "at most 3")]
-                let mean = sum / there().count().max(1) as f64;
-                mean
+                let mean = means.iter().sum::<f64>() / means.len() as f64;
+                (!means.is_empty()).then_some(mean)
             }
         }
     }
@@ -99,8 +112,6 @@ impl Weighting {
 
 /// The points of a profile.
 const PROFILE_POINTS: u32 = 11;
-/// A start drawn at random makes no model more often than not: so many are tried.
-const DRAWS: usize = 1000;
 
 /// Fits the free parameters to examples: the largest mean log-likelihood of the true
 /// coverage of their cells under the maps that the model builds from their scans.
@@ -134,7 +145,11 @@ pub fn fit(
         Some(settings.weighting.objective(&score(examples, &parameters(place)).ok()?))
     };
     let given: Vec<f64> = axes.iter().map(|axis| axis.place(begin)).collect();
-    score(examples, &parameters(&given)).map_err(FitError::Begin)?;
+    let is_allowed = |place: &[f64]| {
+        let method = Method { model: parameters(place), update: Update::Coverage };
+        examples.iter().try_for_each(|example| method.check(example).map(drop))
+    };
+    is_allowed(&given).map_err(FitError::Begin)?;
 
     let (mut path, mut best) = (Vec::new(), None);
     let mut stopped = false;
@@ -145,11 +160,7 @@ pub fn fit(
         let place = if start == 0 {
             given.clone()
         } else {
-            let mut draw = || axes.iter().map(|_| uniform()).collect::<Vec<f64>>();
-            let makes_a_model = |place: &Vec<f64>| {
-                examples.iter().all(|example| is_model(example, &parameters(place)))
-            };
-            (0..DRAWS).map(|_| draw()).find(makes_a_model).unwrap_or_else(|| given.clone())
+            random_start(&given, &mut uniform, |place| is_allowed(place).is_ok())
         };
         let found = maximise(&place, &settings.search, value, |step| {
             let values = axes.iter().zip(&step.place).map(|(axis, place)| axis.value(*place));
@@ -160,10 +171,7 @@ pub fn fit(
             path.push(evaluation);
             next
         });
-        let higher = |found: &(Vec<f64>, f64), best: &Option<(Vec<f64>, f64)>| {
-            best.as_ref().is_none_or(|best| found.1 > best.1)
-        };
-        best = found.filter(|found| higher(found, &best)).or(best);
+        best = higher(best, found);
     }
     let (place, log_likelihood) = best.unwrap_or((given, f64::NEG_INFINITY));
     let profiled = if stopped { 0 } else { axes.len() };
@@ -179,14 +187,8 @@ pub fn score(
     examples: &[Example],
     parameters: &ModelParameters,
 ) -> Result<ExampleScore, ModelError> {
-    let scores: Vec<ExampleScore> =
-        examples.par_iter().map(|e| e.score(parameters)).collect::<Result<_, _>>()?;
-    Ok(ExampleScore::pooled(&scores))
-}
-
-fn is_model(example: &Example, parameters: &ModelParameters) -> bool {
-    let resolution = example.grid.resolution();
-    covmap_model::SensorModel::new(parameters, &example.ring, resolution).is_ok()
+    let method = Method { model: parameters.clone(), update: Update::Coverage };
+    score_method(examples, &method, false)
 }
 
 fn profile(

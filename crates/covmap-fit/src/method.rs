@@ -6,10 +6,12 @@ mod crm;
 pub use beta::BetaCounting;
 pub use crm::Crm;
 
+use crate::example::truths;
 use crate::{Class, Example};
 use beta::beta_posterior;
 use covmap::{Cell, CoverageMap, Histogram};
 use covmap_model::{ModelError, ModelParameters, OccupancyGrid, OccupancyParameters, SensorModel};
+use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
 /// Weights of the log-odds grid.
@@ -38,10 +40,7 @@ impl Default for LogOdds {
 impl LogOdds {
     fn parameters(&self) -> Result<OccupancyParameters, ModelError> {
         let (min, max) = (1e-6, 1.0 - 1e-6);
-        let within = |name, value: f64, max| {
-            let good = (min..=max).contains(&value);
-            good.then_some(()).ok_or(ModelError::OutOfRange { name, value, min, max })
-        };
+        let within = |name, value, max| ModelError::within(name, value, min, max);
         within("log_odds.hit", self.hit, max)?;
         within("log_odds.miss", self.miss, max)?;
         within("log_odds.no_echo", self.no_echo, max)?;
@@ -87,8 +86,7 @@ impl Method {
     /// The constant that is the mean true coverage of the partial cells of some examples; .5
     /// if there are none.
     pub fn training_mean(model: ModelParameters, examples: &[Example]) -> Self {
-        let truths = || examples.iter().flat_map(|e| &e.truth).map(|(_, coverage)| *coverage);
-        let partial = || truths().filter(|c| Class::of(*c) == Class::Partial);
+        let partial = || truths(examples).filter(|c| Class::of(*c) == Class::Partial);
         #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
         let mean = partial().sum::<f64>() / partial().count() as f64;
         Self { model, update: Update::Constant(if mean.is_finite() { mean } else { 0.5 }) }
@@ -104,10 +102,7 @@ impl Method {
             Update::LogOdds(odds) => drop(odds.parameters()?),
             Update::BetaCounting(beta) => beta.validate()?,
             Update::Crm(crm) => crm.validate()?,
-            &Update::Constant(value) if !(0.0..=1.0).contains(&value) => {
-                return Err(ModelError::OutOfRange { name: "constant", value, min: 0.0, max: 1.0 });
-            }
-            Update::Constant(_) => {}
+            Update::Constant(value) => ModelError::within("constant", *value, 0.0, 1.0)?,
         }
         SensorModel::new(&self.model, &example.ring, example.grid.resolution())
     }
@@ -132,7 +127,7 @@ impl Method {
         let cells = example.truth.iter().map(|(cell, _)| *cell);
         Ok(match &self.update {
             Update::Coverage => {
-                let map = example.map(&self.model)?;
+                let map = example.map_of(&model)?;
                 cells.map(|cell| of_map(&map, cell)).collect()
             }
             Update::Crm(crm) => {
@@ -154,6 +149,14 @@ impl Method {
             }
             &Update::Constant(level) => cells.map(|_| split(level, bins, bins)).collect(),
         })
+    }
+
+    /// [`Method::posteriors`] of some examples, which are evaluated in parallel.
+    pub(crate) fn posteriors_of(
+        &self,
+        examples: &[Example],
+    ) -> Result<Vec<Vec<Vec<f64>>>, ModelError> {
+        examples.par_iter().map(|example| self.posteriors(example)).collect()
     }
 }
 

@@ -28,6 +28,31 @@ pub struct Step {
     pub value: Option<f64>,
 }
 
+/// The higher of two results; the first, if they are equal.
+pub(crate) fn higher(
+    best: Option<(Vec<f64>, f64)>,
+    found: Option<(Vec<f64>, f64)>,
+) -> Option<(Vec<f64>, f64)> {
+    match (best, found) {
+        (Some(best), Some(found)) => Some(if found.1 > best.1 { found } else { best }),
+        (best, found) => best.or(found),
+    }
+}
+
+/// A place drawn at random may not be allowed: so many are tried.
+const DRAWS: usize = 1000;
+
+/// A place in the unit cube that is allowed, drawn at random; `given` if none is found.
+pub(crate) fn random_start(
+    given: &[f64],
+    uniform: &mut impl FnMut() -> f64,
+    is_allowed: impl Fn(&[f64]) -> bool,
+) -> Vec<f64> {
+    let mut draw = || given.iter().map(|_| uniform()).collect::<Vec<f64>>();
+    let drawn = (0..DRAWS).map(|_| draw()).find(|place| is_allowed(place));
+    drawn.unwrap_or_else(|| given.to_vec())
+}
+
 /// Climbs to a local maximum of `value` over the unit cube, from `start`. Returns the best
 /// place and its value, or `None` if not even the start is allowed.
 ///

@@ -1,9 +1,8 @@
 //! Tuning any method, all of them with the same budget.
 
-use crate::search::{SearchSettings, maximise};
-use crate::{
-    Axis, AxisError, CalibrationTable, Example, ExampleScore, Method, Parameter, Update, Weighting,
-};
+use crate::compare::table_of;
+use crate::search::{SearchSettings, higher, maximise, random_start};
+use crate::{Axis, AxisError, Example, ExampleScore, Method, Parameter, Update, Weighting};
 use covmap_model::ModelError;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -176,9 +175,6 @@ pub enum TuneError {
     Begin(ModelError),
 }
 
-/// A start drawn at random may make no method: so many are tried.
-const DRAWS: usize = 1000;
-
 /// Tunes a method to examples, as [`crate::fit`] does the sensor model: the largest mean
 /// log-likelihood of the true coverage of their cells. The first search begins at the given
 /// parameters; `uniform` draws uniform numbers in \[0, 1) for the starts of the others.
@@ -219,13 +215,20 @@ pub fn tune(
         let score = score_method(examples, &method(place), settings.calibrated)?;
         Ok(settings.weighting.objective(&score))
     };
-    let first = objective(&given).map_err(TuneError::Begin)?;
+    let is_allowed = |place: &[f64]| {
+        let method = method(place);
+        examples.iter().try_for_each(|example| method.check(example).map(drop))
+    };
+    is_allowed(&given).map_err(TuneError::Begin)?;
     let value = |place: &[f64]| objective(place).ok();
 
-    let mut best = (given.clone(), first);
+    let mut best: Option<(Vec<f64>, f64)> = None;
     let (mut made, mut stopped) = (0, axes.is_empty());
-    let mut start = given.clone();
     while !stopped && made < settings.evaluations {
+        let start = match made {
+            0 => given.clone(),
+            _ => random_start(&given, &mut uniform, |place| is_allowed(place).is_ok()),
+        };
         let left = settings.evaluations - made;
         let search = SearchSettings { evaluations: left, ..SearchSettings::default() };
         let found = maximise(&start, &search, value, |step| {
@@ -234,12 +237,15 @@ pub fn tune(
             stopped = next.is_break();
             next
         });
-        best = found.filter(|found| found.1 > best.1).unwrap_or(best);
-        let mut draw = || axes.iter().map(|_| uniform()).collect::<Vec<f64>>();
-        let is_one = |place: &Vec<f64>| examples.iter().all(|e| method(place).check(e).is_ok());
-        start = (0..DRAWS).map(|_| draw()).find(is_one).unwrap_or_else(|| given.clone());
+        best = higher(best, found);
     }
-    let (place, log_likelihood) = best;
+    let (place, log_likelihood) = match best {
+        Some(best) => best,
+        None => {
+            let value = objective(&given).map_err(TuneError::Begin)?;
+            (given, value)
+        }
+    };
     Ok(Tuned { method: method(&place), log_likelihood, evaluations: made })
 }
 
@@ -256,17 +262,13 @@ pub fn score_method(
     method: &Method,
     calibrated: bool,
 ) -> Result<ExampleScore, ModelError> {
-    let posteriors: Result<Vec<_>, _> = examples.par_iter().map(|e| method.posteriors(e)).collect();
-    let posteriors = posteriors?;
-    let table = calibrated.then(|| {
-        let truths = examples.iter().flat_map(|e| &e.truth).map(|(_, coverage)| *coverage);
-        let cells = posteriors.iter().flatten().map(Vec::as_slice);
-        CalibrationTable::fit(cells.zip(truths), method.model.bins)
-    });
+    let posteriors = method.posteriors_of(examples)?;
+    let table = calibrated.then(|| table_of(&posteriors, examples, method.model.bins));
     let score = |(example, posteriors): (&Example, &Vec<Vec<f64>>)| {
         let output = |p| table.as_ref().map_or(p, |table| table.apply(p));
-        let posteriors = posteriors.iter().map(|p| output(p.as_slice()));
-        ExampleScore::of_posteriors(&example.truth, posteriors)
+        let truths = example.truth.iter().map(|(_, coverage)| *coverage);
+        ExampleScore::of(posteriors.iter().map(|p| output(p.as_slice())).zip(truths))
     };
-    Ok(ExampleScore::pooled(&examples.iter().zip(&posteriors).map(score).collect::<Vec<_>>()))
+    let scores: Vec<_> = examples.par_iter().zip(&posteriors).map(score).collect();
+    Ok(ExampleScore::pooled(&scores))
 }

@@ -126,6 +126,17 @@ pub enum ModelError {
     Footprint(#[from] FootprintError),
 }
 
+impl ModelError {
+    /// Checks that a parameter lies in an interval.
+    ///
+    /// # Errors
+    /// If it does not, or is not a number.
+    pub fn within(name: &'static str, value: f64, min: f64, max: f64) -> Result<(), Self> {
+        let good = (min..=max).contains(&value);
+        good.then_some(()).ok_or(Self::OutOfRange { name, value, min, max })
+    }
+}
+
 impl ModelParameters {
     /// A B21r's sonars: 11 bins, 3 m usable range, 10 cm behind an echo. Chosen by hand
     /// on small simulated worlds, not fitted.
@@ -148,10 +159,7 @@ impl ModelParameters {
         if !(MIN_BINS..=MAX_BINS).contains(&self.bins) {
             return Err(ModelError::Bins(self.bins));
         }
-        let within = |name, value: f64, min, max| {
-            let good = (min..=max).contains(&value);
-            good.then_some(()).ok_or(ModelError::OutOfRange { name, value, min, max })
-        };
+        let within = ModelError::within;
         within("usable_range", self.usable_range, 0.1, 100.0)?;
         within("sigma_in", self.sigma_in, 1e-3, 10.0)?;
         within("behind", self.behind, 0.0, 2.0)?;

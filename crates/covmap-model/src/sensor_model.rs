@@ -38,11 +38,7 @@ impl SensorModel {
         resolution: f64,
     ) -> Result<Self, ModelError> {
         parameters.validate()?;
-        let (min, max) = (1e-3, 10.0);
-        if !(min..=max).contains(&resolution) {
-            let name = "resolution";
-            return Err(ModelError::OutOfRange { name, value: resolution, min, max });
-        }
+        ModelError::within("resolution", resolution, 1e-3, 10.0)?;
         let footprint = Footprint::new(ring, &parameters.footprint)?;
         Ok(Self { parameters: parameters.clone(), resolution, footprint })
     }
@@ -150,9 +146,8 @@ impl SensorModel {
         let tail = tempered(gamma);
         let mut sum = 0.0;
         for (bin, o) in out.iter_mut().enumerate() {
-            let x = bin_coverage(bin, p.bins);
-            let z = (x - mu) / sigma;
-            *o = if z * z > far { tail } else { tempered(gamma + normal(mu, sigma, x)) };
+            let z = (bin_coverage(bin, p.bins) - mu) / sigma;
+            *o = if z * z > far { tail } else { tempered(gamma + normal(z, sigma)) };
             sum += *o;
         }
         out.iter_mut().for_each(|o| *o /= sum);
@@ -166,9 +161,8 @@ impl SensorModel {
     }
 }
 
-/// The density of a Gaussian: `N(μ, σ, x) = exp(−((x − μ)/σ)²/2) / (σ·√(2π))`.
-fn normal(mu: f64, sigma: f64, x: f64) -> f64 {
-    let z = (x - mu) / sigma;
+/// The density of a Gaussian, N(μ, σ, x) = exp(−z²/2) / (σ·√(2π)) with z = (x − μ)/σ.
+fn normal(z: f64, sigma: f64) -> f64 {
     libm::exp(-0.5 * z * z) / (sigma * (2.0 * PI).sqrt())
 }
 

@@ -280,7 +280,7 @@ impl Look<'_> {
         let here = self.cells.bordered(self.view_point);
         let cells = self.offsets.distance[..count].iter().zip(&self.offsets.bordered);
         let is_reason = |(distance, offset): (&f32, &isize)| {
-            *distance <= self.cells.limit(here.wrapping_add_signed(*offset))
+            self.cells.is_reason(here.wrapping_add_signed(*offset), *distance)
         };
         if cells.into_iter().any(is_reason) { REASON } else { 0 }
     }

@@ -134,10 +134,11 @@ impl Cells {
         usize::from(self.codes[bordered]) <= self.bins + UNKNOWN
     }
 
-    /// The distance up to which the cell at a place in the bordered rasters is a reason.
+    /// Whether the cell at a place in the bordered rasters is a reason to measure from so far
+    /// away \[m\].
     #[inline(always)]
-    pub(crate) fn limit(&self, bordered: usize) -> f32 {
-        self.limits[bordered]
+    pub(crate) fn is_reason(&self, bordered: usize, distance: f32) -> bool {
+        distance <= self.limits[bordered]
     }
 
     /// Sets a cell's limit; returns whether it is another one now.

@@ -1,7 +1,11 @@
 //! From where it was measured.
 
 use covmap::{Cell, Grid};
+use covmap_model::cells_under_body;
 use nalgebra::Point2;
+
+/// A view-point exactly at the spacing is not spent, whatever rounding does \[m\].
+const ROUNDING: f64 = 1e-9;
 
 /// Which view-points are spent: too near to where a scan was taken to tell anything new.
 ///
@@ -22,24 +26,18 @@ impl Measured {
 
     /// Takes note of a scan.
     pub(crate) fn note(&mut self, at: Point2<f64>) {
-        #[allow(clippy::cast_possible_truncation, reason = "at most some 10^5 cells")]
-        let reach = (self.spacing / self.grid.resolution()).ceil().min(1e5) as i32;
-        let here = self.grid.unbounded_cell_at(at);
-        let square = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
-        for (dx, dy) in square {
-            if let Some(index) = self.grid.index(here.offset(dx, dy)) {
-                self.spent[index] |= self.is_within_spacing(index, at);
+        for cell in cells_under_body(&self.grid, at, at, self.spacing - ROUNDING) {
+            if let Some(index) = self.grid.index(cell) {
+                self.spent[index] = true;
             }
         }
     }
 
-    fn is_within_spacing(&self, index: usize, of: Point2<f64>) -> bool {
-        (self.grid.center(self.grid.cell(index)) - of).norm() < self.spacing - 1e-9
-    }
-
     /// Whether a scan from one view-point spends another.
     pub(crate) fn is_near(&self, index: usize, view_point: Cell) -> bool {
-        self.is_within_spacing(index, self.grid.center(view_point))
+        let center = |cell| self.grid.center(cell);
+        let distance = (center(self.grid.cell(index)) - center(view_point)).norm();
+        distance <= self.spacing - ROUNDING
     }
 
     pub(crate) fn is_spent(&self, index: usize) -> bool {

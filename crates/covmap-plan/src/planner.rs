@@ -123,7 +123,7 @@ impl Planner {
         };
         let expected: Vec<CountedScan> = in_sight
             .iter()
-            .filter(|(index, distance)| *distance <= self.cells.limit(self.cells.bordered(*index)))
+            .filter(|(index, distance)| self.is_reason(*index, *distance))
             .map(|&(index, distance)| {
                 let before = self.cells.entropy(index);
                 CountedScan { index, distance, before, after: before }
@@ -214,6 +214,11 @@ impl Planner {
         if self.cells.set_limit(index, limit) {
             self.beams.mark_limit(cell);
         }
+    }
+
+    /// Whether a cell is a reason to measure from so far away \[m\].
+    fn is_reason(&self, index: usize, distance: f32) -> bool {
+        self.cells.is_reason(self.cells.bordered(index), distance)
     }
 
     /// V(l): the cells in sight of a view-point, by their row-major index, with their
@@ -407,7 +412,7 @@ impl Planner {
     fn window_offers(&self, candidate: usize) -> bool {
         let Some(window) = &self.window else { return true };
         let is_open = |&(index, distance): &(usize, f32)| {
-            distance <= self.cells.limit(self.cells.bordered(index)) && window.holds(index)
+            self.is_reason(index, distance) && window.holds(index)
         };
         window.holds(candidate) && self.beams.sees(candidate, is_open)
     }
@@ -421,7 +426,7 @@ impl Planner {
             let is_candidate = candidates.indices.binary_search(&view_point).is_ok();
             let sight = if is_candidate { InSight::Candidate } else { InSight::Spent };
             for (index, distance) in self.beams.cells_in_sight(view_point) {
-                if distance <= self.cells.limit(self.cells.bordered(index)) {
+                if self.is_reason(index, distance) {
                     in_sight[index] = in_sight[index].max(sight);
                 }
             }

@@ -41,7 +41,9 @@ impl Scenario {
 }
 
 impl Shape {
-    fn moved(&self, angle: f64, place: &impl Fn((f64, f64)) -> (f64, f64)) -> Self {
+    /// The shape turned by `angle` \[rad\], with its points where `place` puts them \[m\].
+    #[must_use]
+    pub fn moved(&self, angle: f64, place: &impl Fn((f64, f64)) -> (f64, f64)) -> Self {
         match self {
             Self::Rectangle { center, size, angle: own } => {
                 Self::Rectangle { center: place(*center), size: *size, angle: own + angle }

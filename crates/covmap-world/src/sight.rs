@@ -79,6 +79,27 @@ impl World {
         reached
     }
 
+    /// What is seen within `range` \[m\] from the centres of the cells that hold some places;
+    /// places outside of the grid are passed over.
+    ///
+    /// # Panics
+    /// If `coverage` is not on `grid`.
+    pub fn cells_seen_from(
+        &self,
+        grid: &Grid,
+        coverage: &Raster<f64>,
+        places: impl Iterator<Item = Point2<f64>>,
+        range: f64,
+    ) -> Seen {
+        let mut from = Raster::filled(*grid, false);
+        for at in places {
+            if let Some(here) = grid.cell_at(at).and_then(|cell| from.get_mut(cell)) {
+                *here = true;
+            }
+        }
+        self.cells_seen(grid, coverage, &from, range)
+    }
+
     /// What is seen within `range` \[m\] from the centres of the cells `from`.
     ///
     /// From each, rays are cast all around, less than a cell apart at `range`; those of

@@ -37,17 +37,7 @@ pub(super) fn offices(cells: u32, outside: Surface) -> Result<World> {
 }
 
 fn moved(obstacle: &Obstacle, (dx, dy): (f64, f64)) -> Obstacle {
-    let by = |(x, y): (f64, f64)| (x + dx, y + dy);
-    let shape = match obstacle.shape.clone() {
-        Shape::Rectangle { center, size, angle } => {
-            Shape::Rectangle { center: by(center), size, angle }
-        }
-        Shape::Polygon(points) => Shape::Polygon(points.into_iter().map(by).collect()),
-        Shape::Wall { from, to, thickness } => {
-            Shape::Wall { from: by(from), to: by(to), thickness }
-        }
-        Shape::Circle { center, radius } => Shape::Circle { center: by(center), radius },
-    };
+    let shape = obstacle.shape.moved(0.0, &|(x, y)| (x + dx, y + dy));
     Obstacle { shape, surface: obstacle.surface }
 }
 

@@ -39,10 +39,7 @@ impl BetaCounting {
     /// # Errors
     /// If a prior is not positive, or a weight is negative, or one of them too large.
     pub(crate) fn validate(&self) -> Result<(), ModelError> {
-        let within = |name, value: f64, min| {
-            let good = (min..=LARGEST).contains(&value);
-            good.then_some(()).ok_or(ModelError::OutOfRange { name, value, min, max: LARGEST })
-        };
+        let within = |name, value, min| ModelError::within(name, value, min, LARGEST);
         within("beta.prior_hits", self.prior_hits, 1e-3)?;
         within("beta.prior_passes", self.prior_passes, 1e-3)?;
         within("beta.hit", self.hit, 0.0)?;

@@ -40,10 +40,7 @@ impl Crm {
     /// If a parameter is not in its interval: noise [1e-3, 10] m, outlier and lost
     /// [1e-6, 1], prior [1e-3, 1], spread [0, 1].
     pub(crate) fn validate(&self) -> Result<(), ModelError> {
-        let within = |name, value: f64, min, max| {
-            let good = (min..=max).contains(&value);
-            good.then_some(()).ok_or(ModelError::OutOfRange { name, value, min, max })
-        };
+        let within = ModelError::within;
         within("crm.range_noise", self.range_noise, 1e-3, 10.0)?;
         within("crm.outlier", self.outlier, 1e-6, 1.0)?;
         within("crm.lost", self.lost, 1e-6, 1.0)?;

@@ -9,7 +9,6 @@ pub(super) const TICK_SIZE: f32 = 12.0;
 const TICK: f32 = 5.0;
 const TICK_GAP: f32 = 4.0;
 const GRID: Rgb = Rgb(228, 232, 237);
-const FRAME: Rgb = Rgb(120, 130, 142);
 
 /// Where the data are drawn.
 #[derive(Debug, Clone, Copy)]
@@ -73,24 +72,21 @@ impl Area {
         }
         for tick in &x_ticks {
             let x = self.place([tick.share, 0.0])[0];
-            let length = if tick.label.is_empty() { TICK * 0.6 } else { TICK };
-            scene.rule([x, bottom], [x, bottom + length], FRAME);
+            scene.rule([x, bottom], [x, bottom + tick_length(tick)], Rgb::FRAME);
             let at = [x, bottom + TICK + TICK_GAP + 0.78 * TICK_SIZE];
             if !tick.label.is_empty() {
                 scene.text(&tick.label, TICK_SIZE, at, Anchor::Middle, Rgb::INK);
             }
         }
         self.draw_side_ticks(scene, left, -1.0, y_ticks);
-        let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
-        scene.line(corners.to_vec(), FRAME, 1.0, &[]);
+        scene.frame(self.at, self.size, Rgb::FRAME);
     }
 
     /// Draws the ticks upwards at `x`, to the left (−1) or to the right (1) of it.
     pub(super) fn draw_side_ticks(&self, scene: &mut Scene, x: f32, side: f32, ticks: &[Tick]) {
         for tick in ticks {
             let y = self.place([0.0, tick.share])[1];
-            let length = if tick.label.is_empty() { TICK * 0.6 } else { TICK };
-            scene.rule([x, y], [x + side * length, y], FRAME);
+            scene.rule([x, y], [x + side * tick_length(tick), y], Rgb::FRAME);
             let at = [x + side * (TICK + TICK_GAP), y + 0.36 * TICK_SIZE];
             let anchor = if side < 0.0 { Anchor::End } else { Anchor::Start };
             if !tick.label.is_empty() {
@@ -98,6 +94,11 @@ impl Area {
             }
         }
     }
+}
+
+/// A tick without a label is short.
+fn tick_length(tick: &Tick) -> f32 {
+    if tick.label.is_empty() { TICK * 0.6 } else { TICK }
 }
 
 /// Whether a point, by the shares of the axes, lies in the frame.

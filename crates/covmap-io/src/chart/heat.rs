@@ -9,7 +9,19 @@ use crate::picture::Rgb;
 /// From the frame to the bar, and the width of the bar.
 const BAR_GAP: f32 = 16.0;
 const BAR: f32 = 15.0;
-const FRAME: Rgb = Rgb(120, 130, 142);
+
+/// From where to where a cell reaches in its row, and its colour; `None` if it is not drawn.
+type Cell = Option<([f32; 2], Rgb)>;
+
+/// Whether two neighbours in a row are drawn as one.
+fn are_joined(cell: &Cell, next: &Cell) -> bool {
+    match (cell, next) {
+        (Some(([_, end], color)), Some(([from, _], next))) => {
+            color == next && end.total_cmp(from).is_eq()
+        }
+        _ => false,
+    }
+}
 
 /// To the nearest pixel of the PNG, so that cells meet without a seam.
 fn snap(value: f32) -> f32 {
@@ -42,32 +54,17 @@ impl HeatMap {
         }
         for (row, values_of_row) in rows.iter().zip(self.values.chunks(columns.len())) {
             let Some([top, bottom]) = *row else { continue };
-            let mut run: Option<([f32; 2], Rgb)> = None;
-            let mut draw = |run: Option<([f32; 2], Rgb)>| {
-                if let Some(([left, right], color)) = run {
-                    scene.block([left, top], [right - left, bottom - top], color);
-                }
+            let cell = |(column, value): (&Option<[f32; 2]>, &f64)| -> Cell {
+                column.zip(values.share(*value).map(|share| self.color_map.color(share)))
             };
-            for (column, value) in columns.iter().zip(values_of_row) {
-                let share = values.share(*value);
-                let cell = column.zip(share.map(|share| self.color_map.color(share)));
-                run = match (run, cell) {
-                    (run, None) => {
-                        draw(run);
-                        None
-                    }
-                    (Some(([left, end], color)), Some(([from, right], next)))
-                        if next == color && end.total_cmp(&from).is_eq() =>
-                    {
-                        Some(([left, right], color))
-                    }
-                    (run, next) => {
-                        draw(run);
-                        next
-                    }
-                };
+            let cells: Vec<Cell> = columns.iter().zip(values_of_row).map(cell).collect();
+            for run in cells.chunk_by(are_joined) {
+                if let [Some(([left, _], color)), ..] = run
+                    && let [.., Some(([_, right], _))] = run
+                {
+                    scene.block([*left, top], [right - left, bottom - top], *color);
+                }
             }
-            draw(run);
         }
     }
 }
@@ -82,8 +79,6 @@ pub(super) fn draw_bar(scene: &mut Scene, area: &Area, colors: ColorMap, ticks: 
         let color = colors.color(1.0 - (f64::from(step) + 0.5) / 128.0);
         scene.block([left, from], [BAR, to - from], color);
     }
-    let (right, bottom) = (left + BAR, top + height);
-    let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
-    scene.line(corners.to_vec(), FRAME, 1.0, &[]);
-    area.draw_side_ticks(scene, right, 1.0, ticks);
+    scene.frame([left, top], [BAR, height], Rgb::FRAME);
+    area.draw_side_ticks(scene, left + BAR, 1.0, ticks);
 }

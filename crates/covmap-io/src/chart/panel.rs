@@ -8,7 +8,6 @@ use super::scene::{Anchor, Scene, shorten, wrap};
 use super::{Chart, ChartAxis, HeatMap, Panel};
 use crate::picture::Rgb;
 
-pub(super) const GREY_INK: Rgb = Rgb(92, 102, 114);
 const LABEL_SIZE: f32 = 13.0;
 /// What the name of an axis takes beside the labels of its ticks.
 const LABEL_ROW: f32 = 24.0;
@@ -24,7 +23,9 @@ impl Heading {
         let titles = wrap(title.0, title.1, width, 2).into_iter();
         let subtitles = wrap(subtitle.0, subtitle.1, width, 3).into_iter();
         let titles = titles.map(|line| (line, title.1, Rgb::INK));
-        Self { lines: titles.chain(subtitles.map(|line| (line, subtitle.1, GREY_INK))).collect() }
+        Self {
+            lines: titles.chain(subtitles.map(|line| (line, subtitle.1, Rgb::GREY_INK))).collect(),
+        }
     }
 
     pub(super) fn height(&self) -> f32 {
@@ -152,7 +153,7 @@ impl Chart {
         }
         if empty {
             let at = area.place([0.5, 0.5]);
-            scene.text("no data", LABEL_SIZE, at, Anchor::Middle, GREY_INK);
+            scene.text("no data", LABEL_SIZE, at, Anchor::Middle, Rgb::GREY_INK);
         }
     }
 }

@@ -41,6 +41,13 @@ impl Scene {
         self.line(vec![from, to], color, 1.0, &[]);
     }
 
+    /// A thin outline of a rectangle.
+    pub(super) fn frame(&mut self, [left, top]: [f32; 2], [width, height]: [f32; 2], color: Rgb) {
+        let (right, bottom) = (left + width, top + height);
+        let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
+        self.line(corners.to_vec(), color, 1.0, &[]);
+    }
+
     pub(super) fn line(
         &mut self,
         points: Vec<[f32; 2]>,

@@ -1,7 +1,7 @@
 //! CARMEN's text logs.
 
 use super::carmen_line::{LaserIdentity, LaserLine, SonarLine};
-use super::device::{Clock, Device, Measured, laser_beams, readings};
+use super::device::{Clock, Device, Measured, laser_beams};
 use super::fields::Fields;
 use super::lines::Lines;
 use super::poses::{At, Track};
@@ -121,37 +121,37 @@ impl CarmenLog {
     fn read(&mut self, skipped: &mut Skipped) {
         let text = self.lines.text().into_owned();
         let (tag, rest) = text.trim_start().split_once([' ', '\t']).unwrap_or((text.trim(), ""));
-        let mut fields = Fields::new(rest);
-        let (path, line) = (self.lines.path().to_owned(), self.lines.line());
+        // A line of another tag is not split: it may have hundreds of words.
+        let fields = || Fields::new(rest);
         let frame = match (tag, self.sensor) {
             ("PARAM", _) => {
-                if let Err(damage) = self.parameters.read(&mut fields) {
-                    skipped.add_pose(&path, line, &damage);
+                if let Err(damage) = self.parameters.read(&mut fields()) {
+                    skipped.add_pose(self.lines.path(), self.lines.line(), &damage);
                 }
                 return;
             }
             ("ODOM", _) => {
-                let pose = carmen_line::odometry(&mut fields);
+                let pose = carmen_line::odometry(&mut fields());
                 if let Err(damage) = pose.and_then(|(time, pose)| self.track.push(time, pose)) {
-                    skipped.add_pose(&path, line, &damage);
+                    skipped.add_pose(self.lines.path(), self.lines.line(), &damage);
                 }
                 return;
             }
             ("SONAR", Sensor::Sonar) => {
-                carmen_line::sonar(&mut fields).and_then(|sonar| self.sonar(sonar, skipped))
+                carmen_line::sonar(&mut fields()).and_then(|sonar| self.sonar(sonar, skipped))
             }
             ("FLASER", Sensor::Laser) => {
-                carmen_line::flaser(&mut fields).and_then(|laser| self.laser(laser, skipped))
+                carmen_line::flaser(&mut fields()).and_then(|laser| self.laser(laser, skipped))
             }
             ("ROBOTLASER1", Sensor::Laser) => {
-                carmen_line::robot_laser(&mut fields).and_then(|laser| self.laser(laser, skipped))
+                carmen_line::robot_laser(&mut fields()).and_then(|laser| self.laser(laser, skipped))
             }
             _ => return,
         };
         skipped.add_frame();
         match frame.and_then(|frame| self.clock.check(frame.time).map(|()| frame)) {
             Ok(frame) => self.waiting.push_back(frame),
-            Err(damage) => skipped.add(&path, line, damage),
+            Err(damage) => skipped.add(self.lines.path(), self.lines.line(), damage),
         }
     }
 
@@ -161,9 +161,7 @@ impl CarmenLog {
         let ring = self.sonar.ring((cone_angle, places), |(cone_angle, places)| {
             sonar_beams(*cone_angle, places, parameters, configured)
         })?;
-        let line = self.lines.line();
-        let ranges = readings(&ranges, &ring, skipped, (self.lines.path(), line))?;
-        Ok(Measured { line, time, ring, ranges, pose: None })
+        Measured::new(&self.lines, time, ring, &ranges, skipped)
     }
 
     /// The pose is the one that puts the laser where the line says it was: in a corrected log
@@ -178,9 +176,8 @@ impl CarmenLog {
             laser_beams(&mount, identity.count, angles, (0.0, max_range))
         })?;
         self.mount = Some(mount);
-        let line = self.lines.line();
-        let ranges = readings(&ranges, &ring, skipped, (self.lines.path(), line))?;
-        Ok(Measured { line, time, ring, ranges, pose: Some(laser * mount.inverse()) })
+        let measured = Measured::new(&self.lines, time, ring, &ranges, skipped)?;
+        Ok(Measured { pose: Some(laser * mount.inverse()), ..measured })
     }
 }
 

@@ -49,7 +49,7 @@ pub(super) fn sonar(fields: &mut Fields<'_>) -> Result<SonarLine, Damage> {
     expect_words(fields, count, count.saturating_mul(4))?;
     let ranges = fields.ranges(count, 1.0)?;
     let place = |i: usize, fields: &mut Fields<'_>| {
-        let mut number = |what| fields.number(&format!("{what} of sensor {i}"));
+        let mut number = |what| fields.number(format_args!("{what} of sensor {i}"));
         Ok([number("x")?, number("y")?, number("theta")?])
     };
     let places = (0..count).map(|i| place(i, fields)).collect::<Result<_, Damage>>()?;

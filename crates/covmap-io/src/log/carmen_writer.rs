@@ -91,7 +91,7 @@ impl<'a, W: Write> CarmenWriter<'a, W> {
         let number = self.scans;
         let Scan { pose, time, ranges } = scan;
         let beams = self.ring.beams();
-        if ranges.len() != beams.len() {
+        if !self.ring.fits(scan) {
             let (ranges, sensors) = (ranges.len(), beams.len());
             return Err(CarmenWriterError::Count { scan: number, ranges, sensors });
         }

@@ -1,5 +1,6 @@
 //! The sensor that a log comes from: the one of its first frame.
 
+use super::lines::Lines;
 use super::skipped::Damage;
 use super::{SkipReason, Skipped};
 use covmap_sonar::{Beam, Range, SonarRing};
@@ -16,6 +17,21 @@ pub(super) struct Measured {
     pub(super) ranges: Vec<Range>,
     /// Where the robot was, if the frame says so.
     pub(super) pose: Option<Isometry2<f64>>,
+}
+
+impl Measured {
+    /// The frame in the present line of a log, without a pose, from its readings \[m\].
+    pub(super) fn new(
+        lines: &Lines,
+        time: f64,
+        ring: Arc<SonarRing>,
+        values: &[f64],
+        skipped: &mut Skipped,
+    ) -> Result<Self, Damage> {
+        let line = lines.line();
+        let ranges = readings(values, &ring, skipped, (lines.path(), line))?;
+        Ok(Self { line, time, ring, ranges, pose: None })
+    }
 }
 
 /// The ring that all frames of a log share. `I` is what a line says of its sensor.
@@ -90,7 +106,7 @@ pub(super) fn laser_beams(
 ///
 /// From the longest range on there is no echo; below the shortest, and at zero, the reading is
 /// missing; so it is if it is NaN or negative, and that is counted.
-pub(super) fn readings(
+fn readings(
     values: &[f64],
     ring: &SonarRing,
     skipped: &mut Skipped,

@@ -3,6 +3,7 @@
 use super::SkipReason;
 use super::skipped::Damage;
 use nalgebra::{Isometry2, Vector2};
+use std::fmt::Display;
 
 /// No robot is farther from the origin than this \[m\].
 const FARTHEST: f64 = 1e7;
@@ -37,26 +38,26 @@ impl<'a> Fields<'a> {
         self.words.last().is_some_and(|word| word.parse::<f64>().is_ok())
     }
 
-    pub(super) fn word(&mut self, field: &str) -> Result<&'a str, Damage> {
+    pub(super) fn word(&mut self, field: impl Display) -> Result<&'a str, Damage> {
         let word = self.words.get(self.next).copied();
         self.skip(1);
         word.ok_or_else(|| unreadable(field, "is missing; the line is cut short"))
     }
 
     /// Any number, also NaN.
-    fn any_number(&mut self, field: &str) -> Result<f64, Damage> {
+    fn any_number(&mut self, field: impl Display + Copy) -> Result<f64, Damage> {
         let word = self.word(field)?;
         word.parse().map_err(|_| unreadable(field, &format!("`{}` is not a number", short(word))))
     }
 
     /// A number of at most `most`, up or down.
-    fn number_up_to(&mut self, field: &str, most: f64) -> Result<f64, Damage> {
+    fn number_up_to(&mut self, field: impl Display + Copy, most: f64) -> Result<f64, Damage> {
         let value = self.any_number(field)?;
         let good = (-most..=most).contains(&value);
         good.then_some(value).ok_or_else(|| unreadable(field, &format!("{value} is out of range")))
     }
 
-    pub(super) fn number(&mut self, field: &str) -> Result<f64, Damage> {
+    pub(super) fn number(&mut self, field: impl Display + Copy) -> Result<f64, Damage> {
         self.number_up_to(field, FARTHEST)
     }
 
@@ -85,7 +86,7 @@ impl<'a> Fields<'a> {
     /// So many ranges, in units of which a metre has `per_metre`; NaN and infinity, too.
     pub(super) fn ranges(&mut self, count: usize, per_metre: f64) -> Result<Vec<f64>, Damage> {
         (0..count.min(self.left()))
-            .map(|i| Ok(self.any_number(&format!("range {i}"))? / per_metre))
+            .map(|i| Ok(self.any_number(format_args!("range {i}"))? / per_metre))
             .collect()
     }
 
@@ -95,7 +96,7 @@ impl<'a> Fields<'a> {
     }
 }
 
-fn unreadable(field: &str, fault: &str) -> Damage {
+fn unreadable(field: impl Display, fault: &str) -> Damage {
     Damage::new(SkipReason::Unreadable, format!("{field}: {fault}"))
 }
 

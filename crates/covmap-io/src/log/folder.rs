@@ -1,6 +1,6 @@
 //! A folder of three files, in which line i of each is the same frame.
 
-use super::device::{Clock, Device, Measured, laser_beams, readings};
+use super::device::{Clock, Device, Measured, laser_beams};
 use super::fields::Fields;
 use super::lines::Lines;
 use super::poses::{PoseFile, Units};
@@ -69,10 +69,9 @@ impl FolderLog {
             Some(ring) => Arc::clone(ring),
             None => self.laser.ring(checked(values.len())?, |count| laser(*count))?,
         };
-        let line = self.lines.line();
-        let ranges = readings(&values, &ring, skipped, (self.lines.path(), line))?;
+        let measured = Measured::new(&self.lines, time, ring, &values, skipped)?;
         self.clock.check(time)?;
-        Ok(Measured { line, time, ring, ranges, pose: None })
+        Ok(measured)
     }
 }
 

@@ -11,6 +11,10 @@ impl Rgb {
     pub const WHITE: Rgb = Rgb(255, 255, 255);
     /// Nearly black: for text and frames.
     pub const INK: Rgb = Rgb(38, 44, 52);
+    /// Grey: for subtitles.
+    pub(crate) const GREY_INK: Rgb = Rgb(92, 102, 114);
+    /// A lighter grey: for the frames of scales and charts.
+    pub(crate) const FRAME: Rgb = Rgb(120, 130, 142);
     /// A light blue-grey: what nobody knows.
     pub const UNKNOWN: Rgb = Rgb(198, 211, 226);
     /// A strong blue: where a robot drove.

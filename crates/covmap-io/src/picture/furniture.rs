@@ -12,7 +12,6 @@ const SWATCH: f32 = 18.0;
 const ROW: f32 = 30.0;
 /// Between a row of one kind and the next \[pixels\].
 const BREAK: f32 = 18.0;
-const FRAME: Rgb = Rgb(120, 130, 142);
 
 enum Item<'a> {
     ScaleBar { length: f32, metres: f64 },
@@ -143,13 +142,13 @@ fn color_bar(canvas: &mut Canvas, [x, y]: [f32; 2], bar: &ColorBar, width: f32) 
         let index = column * (count - 1) / (width as usize - 1).max(1);
         canvas.rectangle(x + column as f32, y, 1.0, SWATCH, bar.colors[index]);
     }
-    canvas.frame(x - 0.5, y - 0.5, width + 1.0, SWATCH + 1.0, FRAME);
+    canvas.frame(x - 0.5, y - 0.5, width + 1.0, SWATCH + 1.0, Rgb::FRAME);
     canvas.text(&bar.title, SIZE, [x + width + 14.0, baseline(y)], Rgb::INK, false);
     let (low, high) = bar.range;
     for (share, text) in ticks(low, high) {
         #[allow(clippy::cast_possible_truncation, reason = "pixels")]
         let at = x + share as f32 * width;
-        canvas.rectangle((at - 0.5).round(), y + SWATCH, 1.0, 5.0, FRAME);
+        canvas.rectangle((at - 0.5).round(), y + SWATCH, 1.0, 5.0, Rgb::FRAME);
         let left = at - text_width(&text, SIZE - 2.0) / 2.0;
         canvas.text(&text, SIZE - 2.0, [left, y + SWATCH + 19.0], Rgb::INK, false);
     }
@@ -180,7 +179,7 @@ fn draw_key(canvas: &mut Canvas, [x, y]: [f32; 2], key: Key, text: &str) {
     match key {
         Key::Fill(color) => {
             canvas.rectangle(x, y, SWATCH, SWATCH, color);
-            canvas.frame(x + 0.5, y + 0.5, SWATCH - 1.0, SWATCH - 1.0, FRAME);
+            canvas.frame(x + 0.5, y + 0.5, SWATCH - 1.0, SWATCH - 1.0, Rgb::FRAME);
         }
         Key::Line(color) => {
             let line = [[x + 1.5, middle[1]], [x + SWATCH - 1.5, middle[1]]];

@@ -12,7 +12,6 @@ const LEAST_WIDTH: usize = 560;
 const TITLE_SIZE: f32 = 26.0;
 const SUBTITLE_SIZE: f32 = 17.0;
 const LABEL_SIZE: f32 = 17.0;
-const GREY_INK: Rgb = Rgb(92, 102, 114);
 
 impl Picture {
     /// The pixels of a metre.
@@ -43,7 +42,7 @@ impl Picture {
         let inner = (map.width() as usize).max(LEAST_WIDTH) as f32;
         let headings = [
             (self.title.as_deref(), TITLE_SIZE, Rgb::INK),
-            (self.subtitle.as_deref(), SUBTITLE_SIZE, GREY_INK),
+            (self.subtitle.as_deref(), SUBTITLE_SIZE, Rgb::GREY_INK),
         ];
         let headings: Vec<(&str, f32, Rgb)> = headings
             .into_iter()
@@ -64,7 +63,7 @@ impl Picture {
         }
         canvas.paste(MARGIN as i32, map_top as i32, &map);
         let (map_width, map_height) = (map.width() as f32, map.height() as f32);
-        canvas.frame(MARGIN - 0.5, map_top - 0.5, map_width + 1.0, map_height + 1.0, GREY_INK);
+        canvas.frame(MARGIN - 0.5, map_top - 0.5, map_width + 1.0, map_height + 1.0, Rgb::GREY_INK);
         furniture.draw(&mut canvas, below);
         canvas
     }
