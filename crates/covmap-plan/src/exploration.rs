@@ -224,6 +224,7 @@ mod tests {
     use crate::Strategy;
     use nalgebra::Point2;
     use proptest::prelude::*;
+    use proptest::strategy::Strategy as _;
 
     fn exploration(change: impl Fn(&mut PlannerParameters)) -> Exploration {
         let mut parameters = PlannerParameters::standard();
@@ -287,10 +288,18 @@ mod tests {
         assert_eq!(e.status(0, true, 2.0, InSight::Candidate), CellStatus::Resolved);
     }
 
+    /// A distance and an entropy. Drawn as f64: proptest's own f32 trips over its rounding,
+    /// once in some million draws.
+    fn a_step() -> impl proptest::strategy::Strategy<Value = (f32, f32)> {
+        #[allow(clippy::cast_possible_truncation, reason = "any f32 will do")]
+        let step = |(distance, entropy): (f64, f64)| (distance as f32, entropy as f32);
+        (0.3..3.0f64, 0.6..2.4f64).prop_map(step)
+    }
+
     proptest! {
         #[test]
         fn every_cell_ends_after_finitely_many_counted_scans(
-            steps in prop::collection::vec((0.3..3.0f32, 0.6..2.4f32), 1200)
+            steps in prop::collection::vec(a_step(), 1200)
         ) {
             let rule = StallRule::Banded { first: 3.0, closest: 0.5 };
             let mut e = exploration(|p| {
