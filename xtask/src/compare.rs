@@ -59,10 +59,11 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let (a, b) = (examples(&file.training)?, examples(&file.held_out)?);
     let mut directions = Vec::new();
     for (training, test) in [(&a, &b), (&b, &a)] {
+        directions.push(direction(&file, &config, (training, test), &interrupt, &mut progress)?);
+        // What was cut short is no comparison.
         if interrupt.is_pressed() {
             return Ok(ExitCode::from(interrupt::EXIT_CODE));
         }
-        directions.push(direction(&file, &config, (training, test), &interrupt, &mut progress)?);
     }
     write_table(&folder, &directions)?;
     write_json(folder.path("compare.json"), &directions)?;

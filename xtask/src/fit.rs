@@ -92,7 +92,7 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     if !arguments.quiet {
         tell(&report, &written);
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(if interrupt.is_pressed() { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
 }
 
 fn search(
