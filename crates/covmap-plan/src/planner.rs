@@ -6,7 +6,7 @@ use crate::decision::{Score, best};
 use crate::evaluate::{Evaluation, REPORTED};
 use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
-use crate::passage::{large_regions, shortest_passage};
+use crate::passage::{large_regions, nearest_passage};
 use crate::traversable::Traversable;
 use crate::window::Window;
 use crate::{
@@ -257,7 +257,7 @@ impl Planner {
         Candidates { indices, costs, passage: Vec::new() }
     }
 
-    /// What L(c) would be beyond the shortest passage that looks blocked but was not tried,
+    /// What L(c) would be beyond the nearest passage that looks blocked but was not tried,
     /// for a robot that can reach no candidate; `None` if there is no such passage.
     fn candidates_beyond_a_passage(&mut self, from: Cell) -> Option<Candidates> {
         let longest = self.parameters.longest_passage(self.grid.resolution());
@@ -273,10 +273,10 @@ impl Planner {
         self.beams.refresh(&self.cells, &least, Upto::Sight);
         let is_candidate =
             |i: usize| cut_off[i] && !self.measured.is_spent(i) && self.beams.has_reason(i);
-        let passage = shortest_passage(
+        let passage = nearest_passage(
             &self.grid,
             longest,
-            |i| here.cost(i).is_some(),
+            |i| here.cost(i).map(|d| d / self.grid.resolution()),
             |i| self.traversable.may_open(i) && !self.exploration.is_outside(i),
             is_candidate,
         )?;
