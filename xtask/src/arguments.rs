@@ -391,6 +391,9 @@ pub(crate) struct Campaign {
     /// So many runs at the same time [default: one for each core]
     #[arg(long, value_name = "N")]
     pub(crate) jobs: Option<NonZeroUsize>,
+    /// Only say how many runs there are, and whether all is well with them
+    #[arg(long)]
+    pub(crate) check: bool,
     /// Every N-th run only, from the I-th on
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     pub(crate) shard: Shard,

@@ -51,9 +51,7 @@ pub(crate) fn run(
 ) -> Result<Vec<RunRecord>> {
     let plan = Plan::new(campaign)?;
     let folder = Folder::open(options.out, &plan.manifest)?;
-    for file in &plan.left_out {
-        tell(&Step::Note(format!("{}: is not there, and is left out", file.display())));
-    }
+    plan.left_out().for_each(|note| tell(&Step::Note(note)));
     let strangers = folder.strangers(&plan.manifest)?;
     if strangers > 0 {
         tell(&Step::Note(format!(
