@@ -391,6 +391,9 @@ pub(crate) struct Campaign {
     /// So many runs at the same time [default: one for each core]
     #[arg(long, value_name = "N")]
     pub(crate) jobs: Option<NonZeroUsize>,
+    /// Takes the world called NAME from another file than the campaign says
+    #[arg(long = "world", value_name = "NAME=FILE", value_parser = named_file)]
+    pub(crate) worlds: Vec<(String, PathBuf)>,
     /// Only say how many runs there are, and whether all is well with them
     #[arg(long)]
     pub(crate) check: bool,
@@ -416,6 +419,11 @@ pub(crate) struct Collect {
     /// Print nothing but errors and notes
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+fn named_file(text: &str) -> Result<(String, PathBuf), String> {
+    let (name, file) = text.split_once('=').ok_or("it is NAME=FILE")?;
+    Ok((name.to_owned(), file.into()))
 }
 
 fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {

@@ -14,7 +14,10 @@ use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
-    let campaign = Campaign::read(&arguments.file)?;
+    let mut campaign = Campaign::read(&arguments.file)?;
+    for (name, file) in &arguments.worlds {
+        campaign.replace_world(name, file)?;
+    }
     if arguments.check {
         let plan = Plan::new(&campaign)?;
         plan.left_out().for_each(say::note);

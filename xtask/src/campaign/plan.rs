@@ -238,7 +238,7 @@ impl Source {
             }
         };
         let starts = named.starts.as_ref().unwrap_or(&campaign.starts);
-        let starts = starts.poses(&world, config.robot.radius).map_err(about(file))?;
+        let starts = starts.poses(&world, &config).map_err(about(file))?;
         let Setting { while_driving, max_scans, .. } = *setting;
         let limits = Limits { while_driving, max_scans };
         let (file, name) = (file.clone(), name.clone());

@@ -54,8 +54,9 @@ pub(crate) fn run(
     plan.left_out().for_each(|note| tell(&Step::Note(note)));
     let strangers = folder.strangers(&plan.manifest)?;
     if strangers > 0 {
+        let files = if strangers == 1 { "file is" } else { "files are" };
         tell(&Step::Note(format!(
-            "{}: {strangers} files are of another version of covmap, and are not used",
+            "{}: {strangers} {files} of another version of covmap, and not used",
             options.out.display()
         )));
     }
