@@ -10,5 +10,6 @@ mod explore;
 mod fit;
 mod interrupt;
 mod map;
+mod readings;
 mod tables;
 mod typed;
