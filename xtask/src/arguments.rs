@@ -346,6 +346,22 @@ pub(crate) struct Bench {
     /// Smaller maps and samples: a look, not a measurement
     #[arg(long)]
     pub(crate) quick: bool,
+    /// These rows alone
+    #[arg(long, value_enum)]
+    pub(crate) only: Option<Rows>,
+}
+
+/// What `bench` measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Rows {
+    /// Choosing view-points by information gain
+    Decisions,
+    /// Integrating scans
+    Integrating,
+    /// Distance fields
+    Fields,
+    /// Firing the ring
+    Firing,
 }
 
 fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {

@@ -14,7 +14,7 @@ mod situation;
 mod table;
 mod tiles;
 
-use crate::arguments::Bench;
+use crate::arguments::{Bench, Rows};
 use crate::input;
 use crate::progress::Progress;
 use crate::say;
@@ -75,17 +75,28 @@ pub(crate) fn run(arguments: &Bench) -> Result<ExitCode> {
     let extent = if arguments.quick { QUICK } else { FULL };
     let progress = Progress::new(false);
     let bench = Measuring { config: &config, extent, progress: &progress };
+    let wanted = |rows| arguments.only.is_none_or(|only| only == rows);
     let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
     let mut table = one_core.install(|| -> Result<Table> {
         let mut table = Table::default();
-        decisions::small(&bench, &mut table)?;
-        decisions::large(&bench, &mut table)?;
-        integrating::compare(&bench, &mut table)?;
-        fields::compare(&bench, &mut table)?;
-        firing::compare(&bench, &mut table)?;
+        if wanted(Rows::Decisions) {
+            decisions::small(&bench, &mut table)?;
+            decisions::large(&bench, &mut table)?;
+        }
+        if wanted(Rows::Integrating) {
+            integrating::compare(&bench, &mut table)?;
+        }
+        if wanted(Rows::Fields) {
+            fields::compare(&bench, &mut table)?;
+        }
+        if wanted(Rows::Firing) {
+            firing::compare(&bench, &mut table)?;
+        }
         Ok(table)
     })?;
-    decisions::office(&bench, &mut table)?;
+    if wanted(Rows::Decisions) {
+        decisions::office(&bench, &mut table)?;
+    }
     progress.finish();
     say::line(table);
     Ok(ExitCode::SUCCESS)
