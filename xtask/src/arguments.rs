@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use crate::bench::Point;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_plan::Strategy;
 use nalgebra::{Isometry2, Vector2};
@@ -349,6 +350,13 @@ pub(crate) struct Bench {
     /// These rows alone
     #[arg(long, value_enum)]
     pub(crate) only: Option<Rows>,
+    /// How time and memory of a decision grow instead: writes growth.csv, .svg and .png into
+    /// this folder
+    #[arg(long, value_name = "DIR", conflicts_with = "only")]
+    pub(crate) growth: Option<PathBuf>,
+    /// One point of --growth, by a process of its own
+    #[arg(long, hide = true, value_name = "SIDE:BINS:RANGE")]
+    pub(crate) point: Option<Point>,
 }
 
 /// What `bench` measures.

@@ -8,6 +8,7 @@ mod clock;
 mod decisions;
 mod fields;
 mod firing;
+mod growth;
 mod integrating;
 mod literal;
 mod situation;
@@ -20,6 +21,7 @@ use crate::progress::Progress;
 use crate::say;
 use anyhow::Result;
 use covmap_explore::Config;
+pub(crate) use growth::Point;
 use std::process::ExitCode;
 use table::Table;
 
@@ -75,8 +77,17 @@ pub(crate) fn run(arguments: &Bench) -> Result<ExitCode> {
     let extent = if arguments.quick { QUICK } else { FULL };
     let progress = Progress::new(false);
     let bench = Measuring { config: &config, extent, progress: &progress };
+    if let Some(folder) = &arguments.growth {
+        growth::run(&bench, arguments.quick, folder)?;
+        progress.finish();
+        return Ok(ExitCode::SUCCESS);
+    }
     let wanted = |rows| arguments.only.is_none_or(|only| only == rows);
     let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    if let Some(point) = arguments.point {
+        one_core.install(|| growth::point(&config, point))?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut table = one_core.install(|| -> Result<Table> {
         let mut table = Table::default();
         if wanted(Rows::Decisions) {
