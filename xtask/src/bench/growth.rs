@@ -16,8 +16,9 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::str::FromStr;
+use std::time::Instant;
 
-/// Points that would take longer than this for the first decision are left out \[s\].
+/// Points that would take longer than this, as far as one can tell, are left out \[s\].
 const PATIENCE: f64 = 60.0;
 /// The decisions after the first one.
 const NEXT: usize = 5;
@@ -30,6 +31,16 @@ pub(crate) struct Point {
     bins: usize,
     /// The usable range \[m\].
     range: f64,
+}
+
+impl Point {
+    /// What it takes about, in whatever unit: cells of the map, bins, and for each view-point
+    /// cells in range and outcomes.
+    fn work(self) -> f64 {
+        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
+        let bins = self.bins as f64;
+        f64::from(self.side).powi(2) * bins * self.range.powi(3)
+    }
 }
 
 impl Display for Point {
@@ -69,12 +80,12 @@ pub(super) fn run(bench: &Measuring<'_>, quick: bool, folder: &Path) -> Result<(
     std::fs::create_dir_all(folder).map_err(input::about(folder))?;
     let base = Point { side: 200, bins: 11, range: 3.0 };
     let (sides, bins, ranges): (&[u32], &[usize], &[f64]) = if quick {
-        (&[60, 100], &[5, 11], &[2.0, 3.0])
+        (&[100, 150], &[5, 11], &[2.0, 3.0])
     } else {
         let sides = &[100, 200, 300, 500, 700, 1000, 1400, 2000];
         (sides, &[5, 8, 11, 16, 24, 35, 50], &[2.0, 3.0, 4.0, 6.0, 8.0, 10.0])
     };
-    let base = if quick { Point { side: 60, ..base } } else { base };
+    let base = if quick { Point { side: 100, ..base } } else { base };
     let sides = measure(bench, sides.iter().map(|side| Point { side: *side, ..base }))?;
     let bins = measure(bench, bins.iter().map(|bins| Point { bins: *bins, ..base }))?;
     let ranges = measure(bench, ranges.iter().map(|range| Point { range: *range, ..base }))?;
@@ -102,16 +113,18 @@ pub(super) fn run(bench: &Measuring<'_>, quick: bool, folder: &Path) -> Result<(
 /// take too long.
 fn measure(bench: &Measuring<'_>, points: impl Iterator<Item = Point>) -> Result<Vec<Measured>> {
     let mut done: Vec<Measured> = Vec::new();
+    let mut took = 0.0;
     for point in points {
-        let times = |last: &Measured| f64::from(point.side) / f64::from(last.point.side);
-        if done.last().is_some_and(|last| last.cold * times(last).powi(2) > PATIENCE) {
+        if done.last().is_some_and(|last| took * point.work() / last.point.work() > PATIENCE) {
             say::line(format!("{point} (side:bins:range) would take too long and is left out"));
             break;
         }
         bench.progress.say(&format!("{point} (side:bins:range) …"));
         let mut process = Command::new(std::env::current_exe()?);
+        let begun = Instant::now();
         process.args(["bench", "--point", &point.to_string()]).stdin(Stdio::null());
         let output = process.stderr(Stdio::inherit()).output()?;
+        took = begun.elapsed().as_secs_f64();
         let text = String::from_utf8_lossy(&output.stdout);
         let measured = parse(point, text.trim());
         done.push(measured.with_context(|| format!("the process that measures {point} failed"))?);

@@ -45,7 +45,7 @@ impl Terms {
     ) {
         let block = |terms: &[f32]| terms.as_chunks::<LANES>().0[block];
         let (mus, sigmas, gammas) = (block(&self.mu), block(&self.sigma), block(&self.gamma));
-        const PEAK: f32 = 0.398_942_28; // 1/√(2π)
+        const PEAK: f32 = 0.398_942_3; // 1/√(2π)
         let (mut narrow, mut gamma, mut peak) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
             narrow[lane] = 1.0 / sigmas[lane];
