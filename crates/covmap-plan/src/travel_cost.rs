@@ -80,10 +80,10 @@ impl TravelCosts {
         const NEAREST_FIRST: [usize; 8] = [1, 3, 7, 5, 2, 0, 4, 6];
         let comes_by = |step: usize| {
             let (dx, dy) = STEPS[step];
-            let back = -(dy * self.grid.width().cast_signed() + dx);
+            let back = -(dy as isize * self.grid.width().cast_signed() + dx as isize);
             let from = at.checked_add_signed(back).filter(|from| *from < self.near.len())?;
             let is_step = allowed(self.near[from]) & (1 << step) != 0;
-            let length = if step % 2 == 0 { label::STRAIGHT } else { label::DIAGONAL };
+            let length = if step.is_multiple_of(2) { label::STRAIGHT } else { label::DIAGONAL };
             (is_step && label::is_sum(self.labels[at], self.labels[from], length)).then_some(from)
         };
         NEAREST_FIRST.into_iter().find_map(comes_by)

@@ -43,7 +43,7 @@ fn dijkstra(grid: &Grid, source: Cell, free: &[bool]) -> Vec<Option<Way>> {
         });
         let at = open.swap_remove(nearest.unwrap());
         let cell = grid.cell(at);
-        for (dx, dy) in STEPS.map(|(dx, dy)| (dx as i32, dy as i32)) {
+        for (dx, dy) in STEPS {
             let is_diagonal = dx != 0 && dy != 0;
             let beside = [cell.offset(dx, 0), cell.offset(0, dy)];
             let passes =

@@ -31,7 +31,7 @@ impl<'a> Spread<'a> {
         let width = width.cast_signed();
         Self {
             near,
-            offsets: STEPS.map(|(dx, dy)| dy * width + dx),
+            offsets: STEPS.map(|(dx, dy)| dy as isize * width + dx as isize),
             labels: vec![UNREACHED; near.len()],
             turns: BinaryHeap::new(),
         }
@@ -48,7 +48,7 @@ impl<'a> Spread<'a> {
                 continue;
             }
             for step in steps_in(turn) {
-                if step % 2 == 0 {
+                if step.is_multiple_of(2) {
                     self.straight(at, length, step);
                 } else {
                     self.diagonal(at, length, step);

@@ -5,7 +5,7 @@ use covmap::Grid;
 
 /// The steps `(dx, dy)`, counter-clockwise from the right: even ones are straight, odd ones
 /// diagonal. A set of steps is a byte with a bit for each.
-pub(super) const STEPS: [(isize, isize); 8] =
+pub(super) const STEPS: [(i32, i32); 8] =
     [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
 const STRAIGHT: u8 = 0b0101_0101;
@@ -43,7 +43,7 @@ pub(super) fn onward(near: u8, step: usize) -> u8 {
     } else {
         // As seen when looking to the right: bit 3 is behind to the left, bit 5 to the right.
         let blocked = !near.rotate_right(turn);
-        1 | ((blocked >> 3) & 1) * 0b0000_0110 | ((blocked >> 5) & 1) * 0b1100_0000
+        1 | (((blocked >> 3) & 1) * 0b0000_0110) | (((blocked >> 5) & 1) * 0b1100_0000)
     };
     ahead.rotate_left(turn) & allowed(near)
 }
