@@ -437,7 +437,7 @@ impl Planner {
             }
             self.close_window(map);
             let mut left = self.candidates(from);
-            let nearest = left.costs.reached().find(|i| left.indices.contains(i));
+            let nearest = left.costs.nearest(&left.indices);
             if let Some(nearest) = nearest {
                 self.open_window(self.grid.cell(nearest));
                 if !left.indices.iter().any(|i| self.window_offers(*i)) {
