@@ -21,10 +21,11 @@
 mod beam_cache;
 mod cells;
 mod decision;
-mod evaluate;
 mod exploration;
 mod gain;
+mod look_ahead;
 mod measured;
+mod onlookers;
 mod parameters;
 mod planner;
 mod range_likelihood;
@@ -32,6 +33,7 @@ mod stencil;
 mod strategy;
 mod travel_cost;
 mod traversable;
+mod view_points;
 mod window;
 
 pub use decision::{CandidateRecord, Decision};

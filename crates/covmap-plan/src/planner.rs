@@ -1,12 +1,13 @@
 //! The planner: one owner of what is explored, what stalls, and what was computed before.
 
-use crate::beam_cache::{BeamCache, Upto};
+use crate::beam_cache::BeamCache;
 use crate::cells::Cells;
-use crate::decision::{Score, best};
-use crate::evaluate::{Evaluation, REPORTED};
+use crate::decision::{REPORTED, Score, best};
 use crate::exploration::{CountedScan, Exploration, InSight};
 use crate::measured::Measured;
+use crate::onlookers::Mark;
 use crate::traversable::Traversable;
+use crate::view_points::ViewPoints;
 use crate::window::Window;
 use crate::{
     BodyEvidence, CandidateRecord, CellStatus, Decision, PlannerError, PlannerParameters, Scope,
@@ -189,9 +190,9 @@ impl Planner {
                 }
             }
             if reflects_anew {
-                self.beams.mark_sights(change.cell);
+                self.beams.mark(index, Mark::Sight);
             } else if with_gain {
-                self.beams.mark_gains(change.cell, (change.after - change.before).max(0.0) + 1e-6);
+                self.beams.mark(index, Mark::Gain);
             }
             self.update_limit(map, index);
         }
@@ -212,7 +213,7 @@ impl Planner {
             0.0
         };
         if self.cells.set_limit(index, limit) {
-            self.beams.mark_limit(cell);
+            self.beams.mark(index, Mark::Limit);
         }
     }
 
@@ -226,9 +227,7 @@ impl Planner {
     /// total probability of at least ½.
     pub fn cells_in_sight(&mut self, view_point: Cell) -> Vec<(usize, f32)> {
         let Some(index) = self.grid.index(view_point) else { return Vec::new() };
-        let mut least = vec![f64::INFINITY; self.grid.len()];
-        least[index] = f64::NEG_INFINITY;
-        self.beams.refresh(&self.cells, &least, Upto::Sight);
+        self.beams.refresh_sight(&self.cells, &ViewPoints::one(&self.grid, index));
         self.beams.cells_in_sight(index)
     }
 
@@ -237,16 +236,13 @@ impl Planner {
     /// again until it can leave, or there is no reason left.
     fn candidates(&mut self, from: Cell) -> Candidates {
         let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
-        let mut least = vec![f64::INFINITY; self.grid.len()];
-        costs.reached().for_each(|index| least[index] = f64::NEG_INFINITY);
-        self.beams.refresh(&self.cells, &least, Upto::Sight);
+        let mut reached = ViewPoints::new(&self.grid);
+        costs.reached().for_each(|index| reached.insert(index));
+        self.beams.refresh_sight(&self.cells, &reached);
         let trapped = costs.reached().all(|i| self.measured.is_near(i, from));
-        let is_candidate = |i: &usize| {
-            costs.cost(*i).is_some()
-                && (trapped || !self.measured.is_spent(*i))
-                && self.beams.has_reason(*i)
-        };
-        Candidates { indices: (0..self.grid.len()).filter(is_candidate).collect(), costs }
+        let mut indices = reached.indices(|group| self.beams.has_reason(group));
+        indices.retain(|i| trapped || !self.measured.is_spent(*i));
+        Candidates { indices, costs }
     }
 
     /// The candidates with their costs; gains and scores are not filled in.
@@ -262,19 +258,21 @@ impl Planner {
         candidates.indices.iter().map(record).collect()
     }
 
-    fn evaluation(&mut self) -> Evaluation<'_> {
-        let score = self.score();
-        Evaluation { grid: &self.grid, cells: &self.cells, beams: &mut self.beams, score }
-    }
-
     /// Fills in the gains of all records. A strategy without gains does not keep them up to
     /// date, so they are forgotten first.
     fn fill_gains(&mut self, records: &mut [CandidateRecord]) {
-        if !self.parameters.strategy.uses_gain() {
-            let indices = records.iter().filter_map(|r| self.grid.index(r.cell));
-            indices.for_each(|index| self.beams.forget_gain(index));
+        let mut wanted = ViewPoints::new(&self.grid);
+        let indices = records.iter().filter_map(|r| self.grid.index(r.cell));
+        for index in indices {
+            if !self.parameters.strategy.uses_gain() {
+                self.beams.forget_gain(index);
+            }
+            wanted.insert(index);
         }
-        self.evaluation().all(records);
+        self.beams.refresh_gain(&self.cells, &wanted);
+        for record in records {
+            record.gain = self.grid.index(record.cell).map_or(0.0, |index| self.beams.gain(index));
+        }
     }
 
     /// Every candidate for a robot in the cell `from`, with gains and scores, in row-major
@@ -302,7 +300,7 @@ impl Planner {
         let with_gain = self.parameters.strategy.uses_gain();
         let mut records = self.records(&candidates);
         if with_gain {
-            self.evaluation().best(&mut records);
+            self.fill_gains(&mut records);
         }
         self.score().apply(&mut records);
         let decided_by_oracle = if with_gain { self.decide_ties(map, &mut records) } else { 0 };
