@@ -2,7 +2,7 @@
 
 use crate::cells::Cells;
 use crate::gain::lanes::{LANES, Lanes};
-use crate::gain::sweep::{Row, Sweep, Unit};
+use crate::gain::sweep::{Row, Sides, Sweep, Unit};
 use crate::look_ahead::{Ahead, Cone};
 use crate::onlookers::{Mark, Onlookers};
 use crate::view_points::{ViewPoints, groups, place};
@@ -311,13 +311,22 @@ impl WithSimd for Likely<'_> {
         let mut row = Row { y, ..Row::default() };
         for (beam, cone) in cones.iter().enumerate() {
             for (group, wanted) in wanted.iter().enumerate() {
-                if wanted & !states[group * cones.len() + beam].gain == 0 {
+                let known = states[group * cones.len() + beam].gain;
+                if wanted & !known == 0 {
                     continue;
                 }
                 cone.look(cells, here + group * LANES, ahead);
-                let first = row.likely.len();
-                ahead.likely(|k, p| row.likely.push((k, p)));
-                row.units.push(Unit { group, beam, likely: first..row.likely.len() });
+                let first = row.outcomes.len();
+                ahead.likely(wanted | known, |k, p| {
+                    row.outcomes.push(k);
+                    row.probabilities.push(p);
+                });
+                row.units.push(Unit {
+                    group,
+                    beam,
+                    likely: first..row.outcomes.len(),
+                    sides: Sides::default(),
+                });
             }
         }
         row

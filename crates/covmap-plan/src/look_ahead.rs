@@ -10,10 +10,10 @@ use crate::gain::lanes::{LANES, Lanes};
 /// [`LANES`] probabilities.
 type Wide = [f64; LANES];
 
-/// Outcomes less likely than this are left out of E\[I\]. One outcome gains or loses less than
-/// ln n in each of the beam's cells, so all of them together change a beam's E\[I\] by less than
-/// (K + 2) · cells · ln n times this: some 1e-8 nats for a sonar.
-const NEGLIGIBLE: f64 = 1e-10;
+/// Outcomes less likely than this are left out of E\[I\]. Behind what reflects probabilities fall
+/// at least geometrically, so that all of them together are some times this: less than a tenth
+/// of what a decision tolerates.
+const NEGLIGIBLE: f64 = 2e-7;
 
 /// A beam as all view-points see it.
 #[derive(Debug, Clone)]
@@ -40,15 +40,19 @@ impl Ahead {
         Self { probabilities: Vec::new(), traced: [0.0; LANES] }
     }
 
-    /// The outcomes that matter to some view-point, with their probabilities.
+    /// The outcomes that matter to one of some view-points, with their probabilities: 0 for
+    /// the other view-points.
     #[inline(always)]
-    pub(crate) fn likely(&self, mut take: impl FnMut(usize, Lanes)) {
+    pub(crate) fn likely(&self, view_points: u16, mut take: impl FnMut(usize, Lanes)) {
+        let least: Wide = std::array::from_fn(|lane| {
+            if view_points >> lane & 1 == 1 { NEGLIGIBLE } else { f64::INFINITY }
+        });
         for (k, p) in self.probabilities.iter().enumerate() {
             let mut likely = [0.0; LANES];
             for lane in 0..LANES {
                 #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
                 let narrow = p[lane] as f32;
-                likely[lane] = if p[lane] > NEGLIGIBLE { narrow } else { 0.0 };
+                likely[lane] = if p[lane] > least[lane] { narrow } else { 0.0 };
             }
             if likely.iter().fold(0.0, |a: f32, b| a.max(*b)) > 0.0 {
                 take(k, likely);

@@ -316,8 +316,14 @@ impl Planner {
     /// The five best candidates; where the strategy needs no gains they are computed for
     /// these.
     fn report(&mut self, mut records: Vec<CandidateRecord>) -> Vec<CandidateRecord> {
-        records.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell)));
-        records.truncate(REPORTED);
+        let better = |a: &CandidateRecord, b: &CandidateRecord| {
+            b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell))
+        };
+        if records.len() > REPORTED {
+            records.select_nth_unstable_by(REPORTED, better);
+            records.truncate(REPORTED);
+        }
+        records.sort_by(better);
         if !self.parameters.strategy.uses_gain() {
             self.fill_gains(&mut records);
             let largest = records.iter().map(|r| r.gain).fold(0.0, f64::max);

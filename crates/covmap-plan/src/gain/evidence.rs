@@ -66,20 +66,29 @@ pub(crate) struct Prior<'a> {
     block: &'a Block,
     h: &'a [Lanes],
     u: &'a [Lanes],
-    sums: [(Lanes, Lanes); MAX_BINS + 1],
+    sums: &'a PriorSums,
+}
+
+/// Σ h and Σ u from each bin on.
+pub(crate) struct PriorSums {
+    h: [Lanes; MAX_BINS + 1],
+    u: [Lanes; MAX_BINS + 1],
+}
+
+impl Default for PriorSums {
+    fn default() -> Self {
+        Self { h: [[0.0; LANES]; MAX_BINS + 1], u: [[0.0; LANES]; MAX_BINS + 1] }
+    }
 }
 
 impl<'a> Prior<'a> {
     #[inline(always)]
-    pub(crate) fn new((block, h, u): (&'a Block, &'a [Lanes], &'a [Lanes])) -> Self {
-        let mut sums = [([0.0; LANES], [0.0; LANES]); MAX_BINS + 1];
-        for bin in (0..h.len()).rev() {
-            let (above_h, above_u) = sums[bin + 1];
-            for lane in 0..LANES {
-                sums[bin].0[lane] = above_h[lane] + h[bin][lane];
-                sums[bin].1[lane] = above_u[lane] + u[bin][lane];
-            }
-        }
+    pub(crate) fn new(
+        (block, h, u): (&'a Block, &'a [Lanes], &'a [Lanes]),
+        sums: &'a mut PriorSums,
+    ) -> Self {
+        sum_up(h, &mut sums.h);
+        sum_up(u, &mut sums.u);
         Self { block, h, u, sums }
     }
 
@@ -87,7 +96,7 @@ impl<'a> Prior<'a> {
     /// change.
     #[inline(always)]
     pub(crate) fn gain(&self, reading: &Reading) -> Lanes {
-        let (rest_h, rest_u) = &self.sums[reading.head.len()];
+        let (rest_h, rest_u) = (&self.sums.h[reading.head.len()], &self.sums.u[reading.head.len()]);
         let (t, v) = reading.tail;
         let (mut z, mut s) = ([0.0f32; LANES], [0.0f32; LANES]);
         for lane in 0..LANES {
@@ -106,5 +115,17 @@ impl<'a> Prior<'a> {
             gain[lane] = changeable[lane] * (entropy[lane] - (log_z[lane] - s[lane] / z[lane]));
         }
         gain
+    }
+}
+
+#[inline(always)]
+fn sum_up(values: &[Lanes], sums: &mut [Lanes; MAX_BINS + 1]) {
+    let mut sum = [0.0; LANES];
+    sums[values.len()] = sum;
+    for (values, to) in values.iter().zip(&mut sums[..values.len()]).rev() {
+        for lane in 0..LANES {
+            sum[lane] += values[lane];
+        }
+        *to = sum;
     }
 }

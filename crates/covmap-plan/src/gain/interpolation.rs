@@ -10,8 +10,9 @@ use covmap::bin_coverage;
 use std::f64::consts::PI;
 
 /// An interpolated gain of a cell may be off by this, in units of [`SCALE`] and the largest
-/// gain of its histogram: a tenth of what a decision tolerates.
-const TOLERANCE: f64 = 1e-6;
+/// gain of its histogram: what a decision tolerates, for the worst of histograms. Errors of many
+/// cells cancel: E\[I\] is off by some hundredth of it.
+const TOLERANCE: f64 = 1e-5;
 /// A gain that matters in a decision \[nats\].
 const SCALE: f64 = 0.3;
 
@@ -46,16 +47,16 @@ impl Nodes {
         Self { at: nodes.into_iter().map(|y| back(y).clamp(low, high)).collect(), weights }
     }
 
-    /// As few nodes as the entropies of all `probes` allow after the readings that `evidence`
+    /// As few nodes as the entropies of all `probes` allow, times `leniency`, after the readings that `evidence`
     /// makes of a point; all points if that is not less.
     pub(crate) fn few(
         points: &[f64],
         shift: Option<f64>,
-        probes: &Probes,
+        (probes, leniency): (&Probes, f64),
         evidence: impl Fn(f64) -> Evidence,
     ) -> Self {
         let exact: Vec<Vec<f64>> = points.iter().map(|x| probes.after(&evidence(*x))).collect();
-        let allowed = probes.allowed(&exact);
+        let allowed = probes.allowed(&exact, leniency);
         for count in 1..points.len() {
             let nodes = Self::chebyshev(points, count, shift);
             let at: Vec<Vec<f64>> = nodes.at.iter().map(|x| probes.after(&evidence(*x))).collect();
@@ -120,13 +121,14 @@ impl Probes {
         self.probes.iter().map(|(h, u)| evidence.entropy_after(h, u)).collect()
     }
 
-    /// How much an interpolated entropy of each probe may be off, where these are exact.
-    fn allowed(&self, exact: &[Vec<f64>]) -> Vec<f64> {
+    /// How much an interpolated entropy of each probe may be off, where these are exact; more
+    /// by a factor.
+    fn allowed(&self, exact: &[Vec<f64>], leniency: f64) -> Vec<f64> {
         let largest_gain = |(probe, (_, u)): (usize, &(Vec<f64>, Vec<f64>))| {
             let before = -u.iter().sum::<f64>();
             exact.iter().map(|after| (before - after[probe]).abs()).fold(0.0, f64::max)
         };
         let gains = self.probes.iter().enumerate().map(largest_gain);
-        gains.map(|gain| TOLERANCE * (gain + SCALE)).collect()
+        gains.map(|gain| leniency * TOLERANCE * (gain + SCALE)).collect()
     }
 }

@@ -12,6 +12,12 @@ use covmap_model::{Linear, Outcome, SensorModel};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+/// How many nodes are mixed at once.
+pub(crate) const TOGETHER: usize = 4;
+
+/// See [`Builder::leniency`].
+const MOST_LENIENT: f64 = 10.0;
+
 /// The readings of one ring.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
@@ -29,8 +35,9 @@ pub(crate) struct Ring {
 pub(crate) struct Front {
     /// The nearest of the outcomes.
     pub(crate) first: usize,
-    /// For each outcome from the nearest on the weight of every node.
-    pub(crate) weights: Vec<Vec<f32>>,
+    /// For some nodes together their weights in every outcome from the nearest on; 0 past the
+    /// last node.
+    pub(crate) weights: Vec<Vec<[f32; TOGETHER]>>,
     /// For each node where the gains come from.
     pub(crate) sources: Vec<Source>,
 }
@@ -94,6 +101,8 @@ struct Builder<'a> {
     model: &'a SensorModel,
     stencil: &'a Stencil,
     probes: &'a Probes,
+    /// A ring of few cells may be less exact: what counts is the sum over all.
+    leniency: f64,
     cells: Vec<Range<usize>>,
     /// All distances of the ring's cells, in order.
     distances: Vec<f64>,
@@ -111,7 +120,12 @@ impl<'a> Builder<'a> {
         let distances: BTreeSet<u64> =
             stencil.beams.iter().zip(&cells).flat_map(distances).collect();
         let distances = distances.into_iter().map(f64::from_bits).collect();
-        Self { model, stencil, probes, cells, distances, readings: Vec::new() }
+        let all: usize = stencil.beams.iter().map(|b| b.cells.len()).sum();
+        let here: usize = cells.iter().map(Range::len).sum();
+        #[allow(clippy::cast_precision_loss, reason = "some thousand cells")]
+        let leniency = all as f64 / (stencil.ranges.len() * here.max(1)) as f64;
+        let leniency = leniency.clamp(1.0, MOST_LENIENT);
+        Self { leniency, model, stencil, probes, cells, distances, readings: Vec::new() }
     }
 
     fn build(mut self) -> Ring {
@@ -161,7 +175,7 @@ impl<'a> Builder<'a> {
 
     /// All outcomes from the `first` on.
     fn front(&mut self, first: usize) -> Front {
-        let (model, probes) = (self.model, self.probes);
+        let (model, probes) = (self.model, (self.probes, self.leniency));
         let ranges = &self.stencil.ranges[first..];
         let (nearest, farthest) = (self.distances[0], self.distances[self.distances.len() - 1]);
         let middle = 0.5 * (nearest + farthest);
@@ -171,8 +185,13 @@ impl<'a> Builder<'a> {
         let sources = in_range.at.iter();
         let sources =
             sources.map(|range| self.smooth(first, |distance| at(distance, *range))).collect();
-        let narrow = |row: &Vec<f64>| row.iter().map(|w| to_f32(*w)).collect();
-        Front { first, weights: in_range.weights.iter().map(narrow).collect(), sources }
+        let weight = |row: &[f64], node: usize| row.get(node).map_or(0.0, |w| to_f32(*w));
+        let mixed = |first: usize| {
+            let row = |row: &Vec<f64>| std::array::from_fn(|i| weight(row, first + i));
+            in_range.weights.iter().map(row).collect()
+        };
+        let weights = (0..in_range.at.len()).step_by(TOGETHER).map(mixed).collect();
+        Front { first, weights, sources }
     }
 
     /// One outcome that ends in the ring, or before it.
@@ -197,7 +216,7 @@ impl<'a> Builder<'a> {
 
     /// An outcome whose gain is smooth in the distance, for the cells that it covers.
     fn smooth(&mut self, k: usize, evidence: impl Fn(f64) -> Evidence) -> Source {
-        let nodes = Nodes::few(&self.distances, None, self.probes, &evidence);
+        let nodes = Nodes::few(&self.distances, None, (self.probes, self.leniency), &evidence);
         let (first, count) = (self.readings.len(), nodes.at.len());
         for at in &nodes.at {
             self.push(&evidence(*at));

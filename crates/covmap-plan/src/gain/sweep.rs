@@ -5,15 +5,24 @@
 //! summed over the cells of each beam of each view-point, [`LANES`] neighbours of a row side by
 //! side.
 
-use super::evidence::Prior;
+use super::evidence::{Prior, PriorSums};
 use super::lanes::{LANES, Lanes};
-use super::rings::{Ring, Shares, Source, rings};
+use super::rings::{Ring, Shares, Source, TOGETHER, rings};
 use crate::Stencil;
 use crate::cells::Cells;
 use covmap::Grid;
 use covmap_model::SensorModel;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
+use std::ops::Range;
+
+/// The places of a unit's outcomes by where they end from a ring.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Sides {
+    near: Range<usize>,
+    front: Range<usize>,
+    no_echo: Option<usize>,
+}
 
 /// One beam of a group of neighbouring view-points.
 #[derive(Debug, Clone)]
@@ -21,8 +30,11 @@ pub(crate) struct Unit {
     /// The group's place in its row.
     pub(crate) group: usize,
     pub(crate) beam: usize,
-    /// Which of the row's likelihoods are its own.
-    pub(crate) likely: std::ops::Range<usize>,
+    /// Which of the row's outcomes are its own. While it is worked at those are dropped from the
+    /// front that end before the present ring.
+    pub(crate) likely: Range<usize>,
+    /// Those of the present ring.
+    pub(crate) sides: Sides,
 }
 
 /// The units of one row of view-points.
@@ -30,11 +42,16 @@ pub(crate) struct Unit {
 pub(crate) struct Row {
     pub(crate) y: usize,
     pub(crate) units: Vec<Unit>,
-    /// The outcomes of some probability, unit by unit in order, with the probabilities.
-    pub(crate) likely: Vec<(usize, Lanes)>,
+    /// The outcomes of some probability, unit by unit in order …
+    pub(crate) outcomes: Vec<usize>,
+    /// … and their probabilities.
+    pub(crate) probabilities: Vec<Lanes>,
     /// E\[I\] of every unit: the result.
     pub(crate) gains: Vec<Lanes>,
 }
+
+/// So many units of a row are prepared and then summed.
+const AT_ONCE: usize = 16;
 
 /// Which readings of a block of cells are asked for.
 const FRONT: u8 = 1;
@@ -114,24 +131,34 @@ impl Sweep {
         &self,
         ring: &Ring,
         runs: &[Vec<(isize, isize, isize)>],
-        rows: &[Row],
+        rows: &mut [Row],
         low: usize,
         high: usize,
     ) -> Vec<u8> {
         let (blocks, border) = (self.blocks(), self.border);
         let mut asked = vec![0; (high - low + 1 + 2 * border) * blocks];
         let lanes = LANES.cast_signed();
+        let nearest = ring.near.first().map_or(0, |(k, _)| *k);
         for row in rows {
-            for unit in &row.units {
-                let wanted = self.wanted(ring, &row.likely[unit.likely.clone()]);
+            for unit in &mut row.units {
+                while unit.likely.start < unit.likely.end
+                    && row.outcomes[unit.likely.start] < nearest
+                {
+                    unit.likely.start += 1;
+                }
+                unit.sides = self.sides(ring, unit.likely.clone(), &row.outcomes);
+                let wanted = if unit.sides.front.is_empty() { 0 } else { FRONT }
+                    | if unit.sides.near.is_empty() { 0 } else { NEAR }
+                    | if unit.sides.no_echo.is_some() { NO_ECHO } else { 0 };
                 if wanted == 0 {
                     continue;
                 }
                 let x = (unit.group * LANES).cast_signed();
                 for (dy, first, last) in &runs[unit.beam] {
                     let y = (row.y + border - low).wrapping_add_signed(*dy);
-                    let from = (x + first).div_euclid(lanes).max(0);
-                    let to = (x + last + lanes - 1).div_euclid(lanes).min(blocks.cast_signed() - 1);
+                    let from = ((x + first) >> LANES.ilog2()).max(0);
+                    let to =
+                        ((x + last + lanes - 1) >> LANES.ilog2()).min(blocks.cast_signed() - 1);
                     for block in from..=to {
                         asked[(y * blocks).wrapping_add_signed(block)] |= wanted;
                     }
@@ -141,27 +168,21 @@ impl Sweep {
         asked
     }
 
-    fn wanted(&self, ring: &Ring, likely: &[(usize, Lanes)]) -> u8 {
-        let first = ring.front.as_ref().map_or(usize::MAX, |front| front.first);
-        likely.iter().fold(0, |wanted, (k, _)| {
-            wanted
-                | if *k == self.no_echo {
-                    if ring.no_echo.is_some() { NO_ECHO } else { 0 }
-                } else if *k >= first {
-                    FRONT
-                } else if ring.near.iter().any(|(near, _)| near == k) {
-                    NEAR
-                } else {
-                    0
-                }
-        })
+    /// Which of a unit's outcomes end near a ring, beyond it, and nowhere.
+    fn sides(&self, ring: &Ring, likely: Range<usize>, outcomes: &[usize]) -> Sides {
+        let (start, own) = (likely.start, &outcomes[likely]);
+        let first = ring.front.as_ref().map_or(self.no_echo, |front| front.first);
+        let echoes = own.len() - usize::from(own.last() == Some(&self.no_echo));
+        let near = own[..echoes].iter().take_while(|k| **k < first).count();
+        let no_echo = (echoes < own.len() && ring.no_echo.is_some()).then_some(start + echoes);
+        Sides { near: start..start + near, front: start + near..start + echoes, no_echo }
     }
 }
 
 /// The runs of neighbouring cells of a ring, for each beam.
 fn runs(ring: &Ring, stencil: &Stencil) -> Vec<Vec<(isize, isize, isize)>> {
     let beams = stencil.beams.iter().zip(&ring.cells);
-    let runs = |(beam, cells): (&crate::BeamStencil, &std::ops::Range<usize>)| {
+    let runs = |(beam, cells): (&crate::BeamStencil, &Range<usize>)| {
         let mut places: Vec<(isize, isize)> =
             beam.cells[cells.clone()].iter().map(|c| (c.dy as isize, c.dx as isize)).collect();
         places.sort_unstable();
@@ -198,8 +219,9 @@ impl WithSimd for Fill<'_> {
         // The order of the readings: in front, near, no echo.
         let kinds =
             [(FRONT, 0..near), (NEAR, near..no_echo), (NO_ECHO, no_echo..ring.readings.len())];
+        let mut sums = PriorSums::default();
         for (x, asked) in asked.iter().enumerate().filter(|(_, asked)| **asked != 0) {
-            let prior = Prior::new(cells.block(y * sweep.blocks() + x));
+            let prior = Prior::new(cells.block(y * sweep.blocks() + x), &mut sums);
             let column = sweep.border + x * LANES;
             for (_, readings) in kinds.iter().filter(|(kind, _)| asked & kind != 0) {
                 for i in readings.clone() {
@@ -227,33 +249,61 @@ impl WithSimd for Sum<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { sweep, ring, planes, low, row } = self;
         let start = (row.y - low + sweep.border) * sweep.row + sweep.border;
-        for (unit, gains) in row.units.iter().zip(&mut row.gains) {
-            let likely = &row.likely[unit.likely.clone()];
-            let cells = &sweep.offsets[unit.beam][ring.cells[unit.beam].clone()];
-            let here = start + unit.group * LANES;
-            let sum = |source: &Source| source.sum(unit.beam, cells, &planes, here, sweep.stride);
-            if let Some(front) = &ring.front {
-                let outcomes =
-                    likely.iter().filter(|(k, _)| (front.first..sweep.no_echo).contains(k));
-                if outcomes.clone().next().is_some() {
-                    for (node, source) in front.sources.iter().enumerate() {
-                        let mut weight = [0.0; LANES];
-                        for (k, p) in outcomes.clone() {
-                            add(&mut weight, p, front.weights[k - front.first][node]);
-                        }
-                        add_product(gains, &weight, &sum(source));
-                    }
+        let Row { units, outcomes, probabilities, gains, .. } = row;
+        let mixtures = ring.front.as_ref().map_or(&[][..], |front| &front.weights);
+        let mut shares = vec![[[0.0; LANES]; TOGETHER]; AT_ONCE * mixtures.len()];
+        for (units, gains) in units.chunks(AT_ONCE).zip(gains.chunks_mut(AT_ONCE)) {
+            // First all that lies scattered in memory.
+            for (i, unit) in units.iter().enumerate() {
+                let first = ring.front.as_ref().map_or(0, |front| front.first);
+                let likely = unit.sides.front.clone();
+                let likely = outcomes[likely.clone()].iter().zip(&probabilities[likely]);
+                for (mixture, weights) in mixtures.iter().enumerate() {
+                    shares[i * mixtures.len() + mixture] =
+                        mix_outcomes(likely.clone(), first, weights);
                 }
             }
-            for (k, p) in likely {
-                let near = ring.near.iter().find(|(near, _)| near == k).map(|(_, source)| source);
-                let none = ring.no_echo.as_ref().filter(|_| *k == sweep.no_echo);
-                if let Some(source) = near.or(none) {
-                    add_product(gains, p, &sum(source));
+            for (i, (unit, gain)) in units.iter().zip(gains).enumerate() {
+                let cells = &sweep.offsets[unit.beam][ring.cells[unit.beam].clone()];
+                let here = start + unit.group * LANES;
+                let sum =
+                    |source: &Source| source.sum(unit.beam, cells, planes, here, sweep.stride);
+                if !unit.sides.front.is_empty() {
+                    let shares = shares[i * mixtures.len()..].as_flattened();
+                    for (source, share) in ring.front.iter().flat_map(|f| &f.sources).zip(shares) {
+                        add_product(gain, share, &sum(source));
+                    }
+                }
+                let near = unit.sides.near.clone();
+                for (k, p) in outcomes[near.clone()].iter().zip(&probabilities[near]) {
+                    if let Some((_, source)) = ring.near.iter().find(|(near, _)| near == k) {
+                        add_product(gain, p, &sum(source));
+                    }
+                }
+                if let Some((source, place)) = ring.no_echo.as_ref().zip(unit.sides.no_echo) {
+                    add_product(gain, &probabilities[place], &sum(source));
                 }
             }
         }
     }
+}
+
+/// How much each of some nodes weighs in all of a unit's outcomes from the `first` on together.
+#[inline(always)]
+fn mix_outcomes<'a>(
+    likely: impl Iterator<Item = (&'a usize, &'a Lanes)>,
+    first: usize,
+    weights: &[[f32; TOGETHER]],
+) -> [Lanes; TOGETHER] {
+    let [mut a, mut b, mut c, mut d] = [[0.0; LANES]; TOGETHER];
+    for (k, p) in likely {
+        let weights = &weights[k - first];
+        add(&mut a, p, weights[0]);
+        add(&mut b, p, weights[1]);
+        add(&mut c, p, weights[2]);
+        add(&mut d, p, weights[3]);
+    }
+    [a, b, c, d]
 }
 
 impl Source {
@@ -267,27 +317,57 @@ impl Source {
         here: usize,
         stride: usize,
     ) -> Lanes {
-        let mut sum = [0.0; LANES];
         let first = here + self.first * stride;
         match &self.shares {
             Shares::Weights(weights) => {
-                for (offset, weights) in cells.iter().zip(weights[beam].chunks_exact(self.count)) {
-                    let mut at = first.wrapping_add_signed(*offset);
-                    for weight in weights {
-                        add(&mut sum, lanes(planes, at), *weight);
-                        at += stride;
+                let weights = &weights[beam];
+                match self.count {
+                    1 => mix::<1>(weights, cells, planes, first, stride),
+                    2 => mix::<2>(weights, cells, planes, first, stride),
+                    3 => mix::<3>(weights, cells, planes, first, stride),
+                    4 => mix::<4>(weights, cells, planes, first, stride),
+                    count => {
+                        let mut sum = [0.0; LANES];
+                        for (offset, weights) in cells.iter().zip(weights.chunks_exact(count)) {
+                            let mut at = first.wrapping_add_signed(*offset);
+                            for weight in weights {
+                                add(&mut sum, lanes(planes, at), *weight);
+                                at += stride;
+                            }
+                        }
+                        sum
                     }
                 }
             }
             Shares::Own(own) => {
+                let mut sum = [0.0; LANES];
                 for (cell, reading) in &own[beam] {
                     let at = first.wrapping_add_signed(cells[*cell]) + reading * stride;
                     add(&mut sum, lanes(planes, at), 1.0);
                 }
+                sum
             }
         }
-        sum
     }
+}
+
+/// Σ of M readings over some cells, with M weights for each cell.
+#[inline(always)]
+fn mix<const M: usize>(
+    weights: &[f32],
+    cells: &[isize],
+    planes: &[f32],
+    first: usize,
+    stride: usize,
+) -> Lanes {
+    let mut sum = [0.0; LANES];
+    for (offset, weights) in cells.iter().zip(weights.as_chunks::<M>().0) {
+        let at = first.wrapping_add_signed(*offset);
+        for i in 0..M {
+            add(&mut sum, lanes(planes, at + i * stride), weights[i]);
+        }
+    }
+    sum
 }
 
 #[inline(always)]
