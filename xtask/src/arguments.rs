@@ -137,6 +137,14 @@ Example:
   cargo xtask fit configs/fit/b21r.ron --out out/fit
 ";
 
+const READINGS_EXAMPLES: &str = "\
+Examples:
+  cargo xtask survey LOG --out out/truth.ron
+  cargo xtask readings LOG --truth out/truth.ron --out out/readings
+  cargo xtask readings LOG --truth out/truth.ron --fit 300 --out out/fitted
+      also writes config.ron, whose sonars are the most like those of the log
+";
+
 const BENCH_EXAMPLES: &str = "\
 Each row is a ratio, measured on one core in one run, by the time that the core computes: how many
 times as long the other way takes to the same answers. Behind a ratio below its target stands
@@ -190,6 +198,9 @@ pub(crate) enum Command {
     /// Finds the walls of a building in the laser scans of a log: the truth to score maps with.
     #[command(after_help = SURVEY_EXAMPLES)]
     Survey(Survey),
+    /// Compares the readings of simulated sonars with those of a real robot, and fits them.
+    #[command(after_help = READINGS_EXAMPLES)]
+    Readings(Readings),
     /// Measures how fast decisions, updates and echoes are, as ratios.
     #[command(after_help = BENCH_EXAMPLES)]
     Bench(Bench),
@@ -335,6 +346,36 @@ pub(crate) struct Survey {
     pub(crate) poses: Option<PathBuf>,
     /// The file that is written; the picture has its name with .png
     #[arg(long, value_name = "FILE.ron")]
+    pub(crate) out: PathBuf,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Readings {
+    /// A CARMEN log, or a folder with od.txt, sonar.txt and laser.txt
+    pub(crate) log: PathBuf,
+    /// The survey of the place where the log was recorded, from `cargo xtask survey`
+    #[arg(long, value_name = "FILE.ron")]
+    pub(crate) truth: PathBuf,
+    /// Poses instead of the log's: lines `t_ms x_m y_m theta_rad` in the order of time
+    #[arg(long, value_name = "FILE")]
+    pub(crate) poses: Option<PathBuf>,
+    /// Robot and physics of the sonars [default: configs/sonar8.ron, built in]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) config: Option<PathBuf>,
+    /// Fit the physics by a local search of so many evaluations; 0 compares only
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) fit: usize,
+    /// A frame is used if the robot moved this far since the last one used, or turned
+    #[arg(long, value_name = "M", value_parser = every, default_value = "0.05")]
+    pub(crate) every: f64,
+    /// ... or turned by so many degrees
+    #[arg(long, value_name = "DEG", value_parser = every_degrees, default_value = "5")]
+    pub(crate) every_degrees: f64,
+    /// Where the results go
+    #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
     /// Print nothing but errors
     #[arg(long)]

@@ -23,6 +23,7 @@ mod mapper;
 mod model;
 mod pictures;
 mod progress;
+mod readings;
 mod recorded;
 mod replay;
 mod results;
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Survey(arguments) => survey::run(&arguments),
+        Command::Readings(arguments) => readings::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
     };
     done.unwrap_or_else(|error| {

@@ -200,8 +200,14 @@ impl BeamCache {
     }
 
     /// Which view-points of a group that are up to date hold a reason to measure in sight.
-    pub(crate) fn has_reason(&self, group: usize) -> u16 {
+    pub(crate) fn reasons(&self, group: usize) -> u16 {
         self.groups[group].has_reason
+    }
+
+    /// Whether a view-point that is up to date holds a reason to measure in sight.
+    pub(crate) fn has_reason(&self, view_point: usize) -> bool {
+        let (group, lane) = place(self.grid.width(), view_point);
+        self.reasons(group) >> lane & 1 == 1
     }
 
     /// E\[I(l)\] of a view-point that is up to date \[nats\].
@@ -392,7 +398,7 @@ mod tests {
             cache.refresh_gain(&cells, &wanted);
         }
         let gains = (0..grid.len()).map(|index| cache.gain(index).to_bits()).collect();
-        let reasons = (0..cache.groups.len()).map(|group| cache.has_reason(group)).collect();
+        let reasons = (0..cache.groups.len()).map(|group| cache.reasons(group)).collect();
         (gains, cache.in_sight, reasons)
     }
 

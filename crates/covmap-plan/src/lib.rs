@@ -20,6 +20,7 @@
 
 mod beam_cache;
 mod cells;
+mod certificate;
 mod decision;
 mod exploration;
 mod gain;
@@ -27,6 +28,7 @@ mod look_ahead;
 mod measured;
 mod onlookers;
 mod parameters;
+mod passage;
 mod planner;
 mod range_likelihood;
 mod stencil;

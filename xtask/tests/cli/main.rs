@@ -9,5 +9,6 @@ mod explore;
 mod fit;
 mod interrupt;
 mod map;
+mod readings;
 mod tables;
 mod typed;
