@@ -375,7 +375,7 @@ mod tests {
     /// All that is kept after some scans, with one kind of registers.
     fn values(arch: Arch) -> (Vec<u64>, Vec<[u16; LANES]>, Vec<u16>) {
         let parameters = PlannerParameters::standard();
-        let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1).unwrap();
+        let model = SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), 0.1).unwrap();
         let grid = Grid::new(Point2::new(-2.0, -2.0), 0.1, 43, 37).unwrap();
         let stencil = Stencil::new(&model, 0.1);
         let mut map = CoverageMap::new(grid, 11).unwrap();

@@ -74,19 +74,19 @@ pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> Vec<Ring> {
     (0..count.unwrap_or(0)).map(build).collect()
 }
 
-/// A beam's cells in a ring. Beyond the last range that may be measured rings go on.
+/// A beam's cells in a ring: every cell is in one, also where rounding leaves it out of the rings
+/// of the stencil or puts it in two. Beyond the last range that may be measured rings go on.
 fn members(beam: &BeamStencil, ring: usize, resolution: f64) -> Range<usize> {
-    match beam.rings.get(ring) {
-        Some(cells) => cells.clone(),
+    let last = beam.rings.last().map_or(0, |r| r.end);
+    let end = |ring: usize| match beam.rings.get(ring) {
+        Some(cells) => cells.end,
         None => {
             #[allow(clippy::cast_precision_loss, reason = "some hundred rings")]
-            let end = |ring: usize| {
-                let edge = (ring as f64 + 0.5) * resolution;
-                beam.cells.partition_point(|c| c.cell_distance < edge)
-            };
-            end(ring - 1).max(beam.rings.last().map_or(0, |r| r.end))..end(ring)
+            let edge = (ring as f64 + 0.5) * resolution;
+            beam.cells.partition_point(|c| c.cell_distance < edge).max(last)
         }
-    }
+    };
+    ring.checked_sub(1).map_or(0, end)..end(ring)
 }
 
 /// Where the end of a measurement lies from a cell.
