@@ -363,8 +363,8 @@ fn mix<const M: usize>(
     let mut sum = [0.0; LANES];
     for (offset, weights) in cells.iter().zip(weights.as_chunks::<M>().0) {
         let at = first.wrapping_add_signed(*offset);
-        for i in 0..M {
-            add(&mut sum, lanes(planes, at + i * stride), weights[i]);
+        for (i, weight) in weights.iter().enumerate() {
+            add(&mut sum, lanes(planes, at + i * stride), *weight);
         }
     }
     sum
