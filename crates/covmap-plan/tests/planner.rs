@@ -11,7 +11,7 @@ use covmap_plan::{
     expected_information_gain,
 };
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
-use nalgebra::{Isometry2, Point2, Vector2};
+use nalgebra::{Isometry2, Point2};
 use proptest::prelude::*;
 use proptest::strategy::Strategy as Generator;
 use std::f64::consts::PI;
@@ -100,8 +100,8 @@ fn some_models() -> impl Generator<Value = ModelParameters> {
 fn ring(offset: f64) -> SonarRing {
     let beam = |i: u32| {
         let angle = 2.0 * PI * f64::from(i) / 24.0;
-        let at = Vector2::new(offset * angle.cos(), offset * angle.sin());
-        Beam { pose: Isometry2::new(at, angle), half_angle: 0.13, min_range: 0.0, max_range: 5.0 }
+        let pose = Isometry2::rotation(angle) * Isometry2::translation(offset, 0.0);
+        Beam { pose, half_angle: 0.13, min_range: 0.0, max_range: 5.0 }
     };
     SonarRing::new((0..24).map(beam).collect()).unwrap()
 }
