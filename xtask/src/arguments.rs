@@ -1,6 +1,10 @@
 //! What can be typed.
 
-use crate::bench::Point;
+mod bench;
+
+pub(crate) use bench::{Bench, Rows};
+
+use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_plan::Strategy;
 use nalgebra::{Isometry2, Vector2};
@@ -159,6 +163,34 @@ Examples:
                               large ones
 ";
 
+const CAMPAIGN_EXAMPLES: &str = "\
+CAMPAIGN.ron names worlds, settings, strategies, starts and seeds; every combination is a run.
+What they are in a file is in docs/guide.md, and in configs/fig7.ron.
+
+Each run is recorded when it is done. Begun again, the campaign goes on with what is missing;
+damaged results are done again. Ctrl-C ends it, and what is done stays.
+
+The folder that is written:
+  runs.csv                  a line a run: all numbers but times
+  timings.csv               a line a run: times
+  summary.csv               mean, standard deviation, 95 % confidence interval of the mean, n
+  campaign.json, runs/      the list of the runs, and a file for each that is done
+
+Examples:
+  cargo xtask campaign configs/fig7.ron
+  cargo xtask campaign configs/fig7.ron --shard 2/3 --out out/fig7-2
+
+Exit codes: 0 done; 2 bad input, or a result that cannot be written; 130 interrupted with Ctrl-C.
+";
+
+const COLLECT_EXAMPLES: &str = "\
+All folders are of one campaign and one version of covmap. The tables are the same as if one
+machine had run everything.
+
+Example:
+  cargo xtask collect out/fig7-1 out/fig7-2 out/fig7-3 --out out/fig7
+";
+
 /// Explores unknown environments with coverage maps (Stachniss & Burgard, 2003).
 ///
 /// A simulated robot with a ring of sonars explores a world until a certificate says of every
@@ -205,6 +237,12 @@ pub(crate) enum Command {
     /// Measures how fast decisions, updates and echoes are, as ratios.
     #[command(after_help = BENCH_EXAMPLES)]
     Bench(Bench),
+    /// Runs worlds × settings × strategies × starts × seeds, and goes on where it was stopped.
+    #[command(after_help = CAMPAIGN_EXAMPLES)]
+    Campaign(Campaign),
+    /// Merges the folders of a campaign that several machines ran.
+    #[command(after_help = COLLECT_EXAMPLES)]
+    Collect(Collect),
 }
 
 #[derive(Debug, Args)]
@@ -385,33 +423,46 @@ pub(crate) struct Readings {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Bench {
-    /// Smaller maps and samples: a look, not a measurement
+pub(crate) struct Campaign {
+    /// What is run (.ron)
+    #[arg(value_name = "CAMPAIGN.ron")]
+    pub(crate) file: PathBuf,
+    /// So many runs at the same time [default: one for each core]
+    #[arg(long, value_name = "N")]
+    pub(crate) jobs: Option<NonZeroUsize>,
+    /// Takes the world called NAME from another file than the campaign says
+    #[arg(long = "world", value_name = "NAME=FILE", value_parser = named_file)]
+    pub(crate) worlds: Vec<(String, PathBuf)>,
+    /// Only say how many runs there are, and whether all is well with them
     #[arg(long)]
-    pub(crate) quick: bool,
-    /// These rows alone
-    #[arg(long, value_enum)]
-    pub(crate) only: Option<Rows>,
-    /// How time and memory of a decision grow instead: writes growth.csv, .svg and .png into
-    /// this folder
-    #[arg(long, value_name = "DIR", conflicts_with = "only")]
-    pub(crate) growth: Option<PathBuf>,
-    /// One point of --growth, by a process of its own
-    #[arg(long, hide = true, value_name = "SIDE:BINS:RANGE")]
-    pub(crate) point: Option<Point>,
+    pub(crate) check: bool,
+    /// Every N-th run only, from the I-th on
+    #[arg(long, value_name = "I/N", default_value = "1/1")]
+    pub(crate) shard: Shard,
+    /// Where the results go [default: out/CAMPAIGN]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print nothing but errors and notes
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
-/// What `bench` measures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Rows {
-    /// Choosing view-points by information gain
-    Decisions,
-    /// Integrating scans
-    Integrating,
-    /// Distance fields
-    Fields,
-    /// Firing the ring
-    Firing,
+#[derive(Debug, Args)]
+pub(crate) struct Collect {
+    /// Folders that `campaign` wrote
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) dirs: Vec<PathBuf>,
+    /// Where the results go [default: the first DIR]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print nothing but errors and notes
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+fn named_file(text: &str) -> Result<(String, PathBuf), String> {
+    let (name, file) = text.split_once('=').ok_or("it is NAME=FILE")?;
+    Ok((name.to_owned(), file.into()))
 }
 
 fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {

@@ -29,16 +29,20 @@
 
 mod config;
 mod mission;
+mod overridden;
 mod robot;
 mod run;
 mod score;
+mod series;
 mod summary;
 mod trace;
 
 pub use config::{Config, ConfigError, RobotParameters};
 pub use mission::{Limits, Mission, MissionError};
+pub use overridden::OverrideError;
 pub use robot::{RecordedRobot, Robot, SimulatedRobot};
 pub use run::{Ending, Run, View, explore};
 pub use score::{Score, Truth};
+pub use series::{Accuracy, Measurements, Spread, Tally, corners, drawn_starts};
 pub use summary::{CellCounts, Summary};
 pub use trace::{Event, TRACE_VERSION, TraceHasher, TraceHeader};

@@ -4,6 +4,7 @@
 mod bad_input;
 mod bad_maps;
 mod bench;
+mod campaign;
 mod explain;
 mod explore;
 mod fit;
