@@ -1,6 +1,9 @@
 //! What can be typed.
 
-use crate::bench::Point;
+mod bench;
+
+pub(crate) use bench::{Bench, Rows};
+
 use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_plan::Strategy;
@@ -417,36 +420,6 @@ pub(crate) struct Readings {
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Bench {
-    /// Smaller maps and samples: a look, not a measurement
-    #[arg(long)]
-    pub(crate) quick: bool,
-    /// These rows alone
-    #[arg(long, value_enum)]
-    pub(crate) only: Option<Rows>,
-    /// How time and memory of a decision grow instead: writes growth.csv, .svg and .png into
-    /// this folder
-    #[arg(long, value_name = "DIR", conflicts_with = "only")]
-    pub(crate) growth: Option<PathBuf>,
-    /// One point of --growth, by a process of its own
-    #[arg(long, hide = true, value_name = "SIDE:BINS:RANGE")]
-    pub(crate) point: Option<Point>,
-}
-
-/// What `bench` measures.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Rows {
-    /// Choosing view-points by information gain
-    Decisions,
-    /// Integrating scans
-    Integrating,
-    /// Distance fields
-    Fields,
-    /// Firing the ring
-    Firing,
 }
 
 #[derive(Debug, Args)]
