@@ -32,6 +32,7 @@ mod mission;
 mod robot;
 mod run;
 mod score;
+pub mod statistics;
 mod summary;
 mod trace;
 
