@@ -137,6 +137,15 @@ Example:
   cargo xtask fit configs/fit/b21r.ron --out out/fit
 ";
 
+const FIGURE_EXAMPLES: &str = "\
+DIR/figureN.svg and .png are the figure, DIR/figureN*.csv the numbers behind it. Figures 5, 6 and 7
+need campaigns, which are taken from DIR/campaigns as far as they are done there.
+
+Examples:
+  cargo xtask figure 1
+  cargo xtask figure 7 --quick --out out/quick
+";
+
 const BENCH_EXAMPLES: &str = "\
 Each row is a ratio, measured on one core in one run, by the time that the core computes: how many
 times as long the other way takes to the same answers. Behind a ratio below its target stands
@@ -193,6 +202,9 @@ pub(crate) enum Command {
     /// Measures how fast decisions, updates and echoes are, as ratios.
     #[command(after_help = BENCH_EXAMPLES)]
     Bench(Bench),
+    /// Draws a figure of the paper from its own experiment.
+    #[command(after_help = FIGURE_EXAMPLES)]
+    Figure(Figure),
 }
 
 #[derive(Debug, Args)]
@@ -346,6 +358,32 @@ pub(crate) struct Bench {
     /// Smaller maps and samples: a look, not a measurement
     #[arg(long)]
     pub(crate) quick: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Figure {
+    /// Which: 1, 2, 3, 5, 6 or 7
+    #[arg(value_parser = ["1", "2", "3", "5", "6", "7"])]
+    pub(crate) number: String,
+    #[command(flatten)]
+    pub(crate) common: Experiments,
+}
+
+/// How the paper's experiments are run.
+#[derive(Debug, Args)]
+pub(crate) struct Experiments {
+    /// Fewer seeds, coarser cells, smaller worlds: a look, not a result
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// So many runs at the same time [default: one for each core]
+    #[arg(long, value_name = "N")]
+    pub(crate) jobs: Option<NonZeroUsize>,
+    /// Where results go, and from where runs that are done are taken
+    #[arg(long, value_name = "DIR", default_value = "out/paper")]
+    pub(crate) out: PathBuf,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {

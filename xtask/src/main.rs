@@ -11,6 +11,8 @@ mod csv_file;
 mod explain;
 mod explain_picture;
 mod explore;
+mod figure;
+mod figures;
 mod fit;
 mod fit_charts;
 mod fit_file;
@@ -51,6 +53,7 @@ fn main() -> ExitCode {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Survey(arguments) => survey::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Figure(arguments) => figure::run(&arguments),
     };
     done.unwrap_or_else(|error| {
         say::error(&error);
