@@ -1,5 +1,6 @@
 //! What can be typed.
 
+use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_plan::Strategy;
 use nalgebra::{Isometry2, Vector2};
@@ -159,6 +160,34 @@ Examples:
                               large ones
 ";
 
+const CAMPAIGN_EXAMPLES: &str = "\
+CAMPAIGN.ron names worlds, settings, strategies, starts and seeds; every combination is a run.
+What they are in a file is in docs/guide.md, and in configs/fig7.ron.
+
+Each run is recorded when it is done. Begun again, the campaign goes on with what is missing;
+damaged results are done again. Ctrl-C ends it, and what is done stays.
+
+The folder that is written:
+  runs.csv                  a line a run: all numbers but times
+  timings.csv               a line a run: times
+  summary.csv               mean, standard deviation, 95 % confidence interval of the mean, n
+  campaign.json, runs/      the list of the runs, and a file for each that is done
+
+Examples:
+  cargo xtask campaign configs/fig7.ron
+  cargo xtask campaign configs/fig7.ron --shard 2/3 --out out/fig7-2
+
+Exit codes: 0 done; 2 bad input, or a result that cannot be written; 130 interrupted with Ctrl-C.
+";
+
+const COLLECT_EXAMPLES: &str = "\
+All folders are of one campaign and one version of covmap. The tables are the same as if one
+machine had run everything.
+
+Example:
+  cargo xtask collect out/fig7-1 out/fig7-2 out/fig7-3 --out out/fig7
+";
+
 /// Explores unknown environments with coverage maps (Stachniss & Burgard, 2003).
 ///
 /// A simulated robot with a ring of sonars explores a world until a certificate says of every
@@ -205,6 +234,12 @@ pub(crate) enum Command {
     /// Draws a figure of the paper from its own experiment.
     #[command(after_help = FIGURE_EXAMPLES)]
     Figure(Figure),
+    /// Runs worlds × settings × strategies × starts × seeds, and goes on where it was stopped.
+    #[command(after_help = CAMPAIGN_EXAMPLES)]
+    Campaign(Campaign),
+    /// Merges the folders of a campaign that several machines ran.
+    #[command(after_help = COLLECT_EXAMPLES)]
+    Collect(Collect),
 }
 
 #[derive(Debug, Args)]
@@ -382,6 +417,38 @@ pub(crate) struct Experiments {
     #[arg(long, value_name = "DIR", default_value = "out/paper")]
     pub(crate) out: PathBuf,
     /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Campaign {
+    /// What is run (.ron)
+    #[arg(value_name = "CAMPAIGN.ron")]
+    pub(crate) file: PathBuf,
+    /// So many runs at the same time [default: one for each core]
+    #[arg(long, value_name = "N")]
+    pub(crate) jobs: Option<NonZeroUsize>,
+    /// Every N-th run only, from the I-th on
+    #[arg(long, value_name = "I/N", default_value = "1/1")]
+    pub(crate) shard: Shard,
+    /// Where the results go [default: out/CAMPAIGN]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print nothing but errors and notes
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Collect {
+    /// Folders that `campaign` wrote
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) dirs: Vec<PathBuf>,
+    /// Where the results go [default: the first DIR]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print nothing but errors and notes
     #[arg(long)]
     pub(crate) quiet: bool,
 }

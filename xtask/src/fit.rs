@@ -7,7 +7,7 @@ use crate::interrupt::{self, Interrupt};
 use crate::progress::Progress;
 use crate::{input, say};
 use anyhow::{Result, anyhow};
-use covmap_explore::Config;
+use covmap_explore::{Config, Spread};
 use covmap_fit::{
     ClassScore, Evaluation, Example, ExampleScore, FitSettings, Fitted, Profile, SearchSettings,
     Weighting, fit, score,
@@ -16,7 +16,6 @@ use covmap_io::{OutputFolder, write_json, write_ron};
 use covmap_model::ModelParameters;
 use covmap_world::{stream, uniform};
 use serde::Serialize;
-use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -135,13 +134,8 @@ fn search(
 fn paired(compared: &[Compared], weighting: Weighting) -> Option<Paired> {
     let of = |score| weighting.objective(score);
     let differences: Vec<f64> = compared.iter().map(|c| of(&c.after) - of(&c.before)).collect();
-    let n = differences.len();
-    let count = f64::from(u32::try_from(n).ok()?);
-    let mean = differences.iter().sum::<f64>() / count;
-    let variance = differences.iter().map(|d| (d - mean) * (d - mean)).sum::<f64>() / (count - 1.0);
-    let t = StudentsT::new(0.0, 1.0, count - 1.0).ok()?.inverse_cdf(0.975);
-    let half = t * (variance / count).sqrt();
-    (n >= 2).then_some(Paired { n, mean, low: mean - half, high: mean + half })
+    let Spread { n, mean, interval, .. } = Spread::of(&differences)?;
+    interval.map(|(low, high)| Paired { n, mean, low, high })
 }
 
 fn write(folder: &OutputFolder, config: &Config, report: &Report<'_>) -> Result<()> {

@@ -11,7 +11,6 @@ use covmap_io::read_ron;
 use covmap_plan::Strategy;
 use covmap_sonar::SonarRing;
 use covmap_world::{Scenario, World};
-use nalgebra::Vector2;
 use rayon::prelude::*;
 use serde::Deserialize;
 use std::ops::ControlFlow;
@@ -155,15 +154,8 @@ impl Simulated {
             bail!("{}: turn and shift must be finite, the shift not negative", path.display());
         }
         let scenario: Scenario = read_ron(&file)?;
-        // What is wrong with the scenario is said in its own coordinates.
-        World::from_scenario(&scenario, config.sonar.surface).map_err(about(&file))?;
-        let shift = Vector2::new(self.shift.0, self.shift.1);
-        let moved = if self.turn == 0.0 && shift == Vector2::zeros() {
-            scenario
-        } else {
-            scenario.moved(self.turn, shift)
-        };
-        let world = World::from_scenario(&moved, config.sonar.surface).map_err(about(&file))?;
+        let surface = config.sonar.surface;
+        let world = input::moved(&scenario, self.turn, self.shift, (&file, surface))?;
         let mut config = config.clone();
         config.planner.strategy = self.strategy;
         let limits = Limits { max_scans: Some(self.scans), ..Limits::default() };

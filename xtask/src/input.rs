@@ -7,7 +7,7 @@ use covmap_io::{load_map_server, parse_ron, read_ron};
 use covmap_model::SensorModel;
 use covmap_plan::{Planner, PlannerError};
 use covmap_world::{Scenario, Surface, World};
-use nalgebra::{Isometry2, Point2};
+use nalgebra::{Isometry2, Point2, Vector2};
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
@@ -64,6 +64,22 @@ pub(crate) fn world(file: &Path, surface: Surface) -> Result<World> {
             bail!("{}: a world is a scenario (.ron) or a map of map_server (.yaml)", file.display())
         }
     }
+}
+
+/// The world of a scenario in a file, turned \[rad\] and shifted \[m\].
+pub(crate) fn moved(
+    scenario: &Scenario,
+    turn: f64,
+    shift: (f64, f64),
+    (file, surface): (&Path, Surface),
+) -> Result<World> {
+    // What is wrong with the scenario is said in its own coordinates.
+    let world = World::from_scenario(scenario, surface).map_err(about(file))?;
+    let shift = Vector2::new(shift.0, shift.1);
+    if turn == 0.0 && shift == Vector2::zeros() {
+        return Ok(world);
+    }
+    World::from_scenario(&scenario.moved(turn, shift), surface).map_err(about(file))
 }
 
 /// Checks all sections of a configuration, and that its tables will not be absurdly large.

@@ -6,6 +6,8 @@
 
 mod arguments;
 mod bench;
+#[allow(dead_code, unused_imports, reason = "figures and verdicts read the records")]
+mod campaign;
 mod compare;
 mod csv_file;
 mod explain;
@@ -54,6 +56,8 @@ fn main() -> ExitCode {
         Command::Survey(arguments) => survey::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Figure(arguments) => figure::run(&arguments),
+        Command::Campaign(arguments) => campaign::command(&arguments),
+        Command::Collect(arguments) => campaign::collect(&arguments),
     };
     done.unwrap_or_else(|error| {
         say::error(&error);

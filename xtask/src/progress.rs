@@ -1,5 +1,6 @@
 //! A line on the terminal that says how far an exploration is.
 
+use crate::say;
 use covmap_explore::{Mission, View};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -72,6 +73,47 @@ impl Progress {
         if let Some(line) = &self.line {
             line.finish_and_clear();
         }
+    }
+}
+
+/// A bar that says how many runs are done, and how much time is left.
+#[derive(Debug)]
+pub(crate) struct Bar(ProgressBar);
+
+impl Bar {
+    /// A bar on the standard error, if that is a terminal and the user wants it.
+    pub(crate) fn new(quiet: bool) -> Self {
+        let watched = !quiet && std::io::stderr().is_terminal();
+        let bar = if watched { ProgressBar::new(0) } else { ProgressBar::hidden() };
+        let style = "{bar:30} {pos} of {len} runs · {elapsed} so far · {eta} left";
+        if let Ok(style) = ProgressStyle::with_template(style) {
+            bar.set_style(style);
+        }
+        bar.enable_steady_tick(Duration::from_millis(500));
+        Self(bar)
+    }
+
+    /// So many runs of so many are done before it begins.
+    pub(crate) fn begin(&self, recorded: usize, of: usize) {
+        self.0.set_length(of as u64);
+        self.0.set_position(recorded as u64);
+        // What was done before says nothing of the time that is left.
+        self.0.reset_eta();
+    }
+
+    /// One more is done.
+    pub(crate) fn done(&self) {
+        self.0.inc(1);
+    }
+
+    /// Prints something to know above the bar.
+    pub(crate) fn note(&self, text: &str) {
+        self.0.suspend(|| say::note(text));
+    }
+
+    /// Clears the bar.
+    pub(crate) fn finish(&self) {
+        self.0.finish_and_clear();
     }
 }
 

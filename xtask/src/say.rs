@@ -12,3 +12,8 @@ pub(crate) fn line(text: impl Display) {
 pub(crate) fn error(error: &anyhow::Error) {
     let _ = writeln!(std::io::stderr(), "error: {error:#}");
 }
+
+/// Prints something to know that is no error.
+pub(crate) fn note(text: impl Display) {
+    let _ = writeln!(std::io::stderr(), "note: {text}");
+}

@@ -18,6 +18,9 @@ pub struct Truth {
     pub reachable: Raster<bool>,
     /// The first solid cells that can be seen from there within the usable range.
     pub first_solid: Raster<bool>,
+    /// The cells that can be seen from there within the usable range, and the first solid
+    /// ones: the same for every strategy.
+    pub observable: Raster<bool>,
 }
 
 /// How good a map is.
@@ -47,7 +50,10 @@ impl Truth {
         let at = Point2::from(start.translation.vector);
         let reachable = world.reachable_cells(grid, at, config.robot.radius);
         let seen = world.cells_seen(grid, &coverage, &reachable, config.model.usable_range);
-        Self { coverage, reachable, first_solid: seen.first_solid }
+        let observable = Raster::from_fn(*grid, |cell| {
+            [&seen.in_sight, &seen.first_solid].iter().any(|r| r.get(cell) == Some(&true))
+        });
+        Self { coverage, reachable, first_solid: seen.first_solid, observable }
     }
 
     /// The cells whose error counts: within the usable range and in sight of a pose of the
@@ -89,7 +95,7 @@ impl Truth {
 }
 
 /// The mean of some numbers; 0 for none.
-fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+pub(crate) fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
     #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
     let count = values.len().max(1) as f64;
     // A sum of nothing would be −0.

@@ -1,31 +1,7 @@
-//! The classes of cells that are scored apart.
+//! Values for all cells and for each class of them.
 
+use covmap::Class;
 use serde::Serialize;
-
-/// A coverage this near to 0 or to 1 is one of them: exact coverages are good to this.
-const EXACT: f64 = 1e-9;
-
-/// The class of a cell by its true coverage.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Class {
-    /// Coverage 0.
-    Free,
-    /// A coverage between 0 and 1.
-    Partial,
-    /// Coverage 1.
-    Solid,
-}
-
-impl Class {
-    /// The class of a true coverage.
-    pub fn of(coverage: f64) -> Self {
-        match coverage {
-            c if c < EXACT => Self::Free,
-            c if c > 1.0 - EXACT => Self::Solid,
-            _ => Self::Partial,
-        }
-    }
-}
 
 /// One value for all cells, and one for each class.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]

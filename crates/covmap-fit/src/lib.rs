@@ -27,9 +27,10 @@ mod search;
 mod tuning;
 
 pub use axis::{Axis, AxisError, Parameter};
-pub use class::{ByClass, Class};
+pub use class::ByClass;
 pub use compare::{CALIBRATION_LEVELS, CalibrationTable, ClassComparison, ComparisonSettings};
 pub use compare::{Contender, Difference, Estimate, Row, compare, table, trajectory_blocks};
+pub use covmap::Class;
 pub use example::{ClassScore, Example, ExampleScore};
 pub use fitting::{Evaluation, FitError, FitSettings, Fitted, Profile, Weighting, fit, score};
 pub use method::{BetaCounting, Crm, LogOdds, Method, Update};

@@ -36,5 +36,5 @@ pub use belief_file::BeliefFileError;
 pub use coverage_map::{Change, CoverageMap, MapError};
 pub use grid::{Cell, Grid, GridError, MAX_CELLS};
 pub use histogram::{Histogram, MAX_BINS, MIN_BINS, PROBABILITY_FLOOR, bin_coverage, product};
-pub use proper_score::{LIKELIHOOD_FLOOR, crps, log_likelihood, lower_bin, randomised_pit};
+pub use proper_score::{Class, LIKELIHOOD_FLOOR, crps, log_likelihood, lower_bin, randomised_pit};
 pub use raster::Raster;

@@ -5,6 +5,31 @@
 
 use crate::bin_coverage;
 
+/// A coverage this near to 0 or to 1 is one of them: exact coverages are good to this.
+const EXACT: f64 = 1e-9;
+
+/// The class of a cell by its true coverage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Class {
+    /// Coverage 0.
+    Free,
+    /// A coverage between 0 and 1.
+    Partial,
+    /// Coverage 1.
+    Solid,
+}
+
+impl Class {
+    /// The class of a true coverage.
+    pub fn of(coverage: f64) -> Self {
+        match coverage {
+            c if c < EXACT => Self::Free,
+            c if c > 1.0 - EXACT => Self::Solid,
+            _ => Self::Partial,
+        }
+    }
+}
+
 /// The share of every posterior that is spread evenly over its bins before a likelihood is
 /// taken, so that no truth is impossible: η, the same for every method that is compared.
 pub const LIKELIHOOD_FLOOR: f64 = 0.001;

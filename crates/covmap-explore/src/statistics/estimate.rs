@@ -1,5 +1,6 @@
 //! A number that was measured, and how sure it is.
 
+use crate::Spread;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -26,12 +27,10 @@ pub struct Estimate {
 impl Estimate {
     /// The mean of independent values; `None` for none.
     pub fn of_mean(values: &[f64]) -> Option<Self> {
+        let Spread { n, mean, deviation, .. } = Spread::of(values)?;
         #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
-        let n = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / n;
-        let squares: f64 = values.iter().map(|v| (v - mean) * (v - mean)).sum();
-        let standard_error = (squares / (n - 1.0).max(1.0) / n).sqrt();
-        (!values.is_empty()).then_some(Self { value: mean, standard_error, groups: values.len() })
+        let standard_error = deviation.map_or(f64::INFINITY, |sd| sd / (n as f64).sqrt());
+        Some(Self { value: mean, standard_error, groups: n })
     }
 
     /// The central interval that holds the true value with a probability of `level`; `None`

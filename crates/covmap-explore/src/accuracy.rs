@@ -1,0 +1,77 @@
+//! How accurate a map is, by the class of the cells, and how certain.
+
+use crate::score::mean;
+use crate::{Mission, Truth};
+use covmap::{Cell, Class, CoverageMap, crps};
+
+/// Above this entropy a cell is not explored well enough in Table 1 \[nats\].
+const TABLE_1: f64 = 0.65;
+
+/// How far a map is from the truth, and how much of it is certain.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// Mean continuous ranked probability score over the scored cells.
+    pub crps: f64,
+    /// Mean absolute error of the expected coverage over the scored cells of coverage 0.
+    pub mae_free: f64,
+    /// ... of a coverage between 0 and 1.
+    pub mae_partial: f64,
+    /// ... of coverage 1.
+    pub mae_solid: f64,
+    /// The share of the observable cells that are known with an entropy of at most ε.
+    pub share_explored: f64,
+    /// The share of the observable cells with an entropy above .65: Table 1, over the same
+    /// cells for every technique.
+    pub share_uncertain: f64,
+    /// How many cells are observable.
+    pub observable_cells: f64,
+}
+
+impl Accuracy {
+    /// The accuracy of a map over the cells that count.
+    pub fn new(truth: &Truth, mission: &Mission, map: &CoverageMap, scored: &[Cell]) -> Self {
+        let coverage = |cell: Cell| truth.coverage.get(cell).copied().unwrap_or(1.0);
+        let error = |class: Class| {
+            let cells: Vec<&Cell> =
+                scored.iter().filter(|cell| Class::of(coverage(**cell)) == class).collect();
+            mean(cells.iter().map(|cell| (map.mean(**cell) - coverage(**cell)).abs()))
+        };
+        let score = |cell: &Cell| crps(map.histogram(*cell).probabilities(), coverage(*cell));
+        Self {
+            crps: mean(scored.iter().map(score)),
+            mae_free: error(Class::Free),
+            mae_partial: error(Class::Partial),
+            mae_solid: error(Class::Solid),
+            share_explored: truth.share_explored(map, mission),
+            share_uncertain: truth.share_observable(|cell| map.entropy(cell) > TABLE_1),
+            observable_cells: truth.observable.iter().map(|(_, o)| f64::from(*o)).sum(),
+        }
+    }
+
+    /// All numbers by their names.
+    pub fn named(&self) -> [(&'static str, f64); 7] {
+        [
+            ("crps", self.crps),
+            ("mae_free", self.mae_free),
+            ("mae_partial", self.mae_partial),
+            ("mae_solid", self.mae_solid),
+            ("share_explored", self.share_explored),
+            ("share_uncertain", self.share_uncertain),
+            ("observable_cells", self.observable_cells),
+        ]
+    }
+}
+
+impl Truth {
+    /// The share of the observable cells that are known with an entropy of at most ε.
+    pub fn share_explored(&self, map: &CoverageMap, mission: &Mission) -> f64 {
+        let threshold = mission.config.planner.entropy_threshold;
+        self.share_observable(|cell| map.is_known(cell) && map.entropy(cell) <= threshold)
+    }
+
+    fn share_observable(&self, good: impl Fn(Cell) -> bool) -> f64 {
+        let all: Vec<Cell> =
+            self.observable.iter().filter(|(_, o)| **o).map(|(cell, _)| cell).collect();
+        mean(all.iter().map(|cell| f64::from(good(*cell))))
+    }
+}

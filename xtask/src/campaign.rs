@@ -1,0 +1,26 @@
+//! Campaigns: worlds × settings × strategies × starts × seeds, run in parallel and recorded
+//! run by run.
+
+mod collect;
+mod command;
+mod digest;
+mod execute;
+mod file;
+mod folder;
+mod paths;
+mod plan;
+mod pool;
+mod record;
+mod starts;
+mod tables;
+mod version;
+
+pub(crate) use collect::run as collect;
+pub(crate) use command::run as command;
+pub(crate) use file::{Campaign, NamedWorld, Seeds, Setting, Starts};
+pub(crate) use folder::{load, load_paths};
+pub(crate) use paths::Paths;
+pub(crate) use plan::Shard;
+pub(crate) use pool::{Options, Step, run};
+pub(crate) use record::{RunKey, RunRecord, Value};
+pub(crate) use version::VERSION;

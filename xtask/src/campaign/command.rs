@@ -1,0 +1,41 @@
+//! `campaign`: runs what its file says.
+
+use super::file::Campaign;
+use super::pool::{Options, Step, run as run_all};
+use crate::arguments::Campaign as Arguments;
+use crate::interrupt::{self, Interrupt};
+use crate::progress::Bar;
+use crate::say;
+use anyhow::Result;
+use std::num::NonZeroUsize;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
+    let interrupt = Interrupt::listen()?;
+    let campaign = Campaign::read(&arguments.file)?;
+    let out = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.file));
+    let all = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
+    let jobs = arguments.jobs.unwrap_or(all);
+    let options = Options { jobs, shard: arguments.shard, out: &out, interrupt: &interrupt };
+    let bar = Bar::new(arguments.quiet);
+    let records = run_all(&campaign, &options, &|step| match step {
+        Step::Begin { recorded, of } => bar.begin(*recorded, *of),
+        Step::Note(note) => bar.note(note),
+        Step::Done(_) => bar.done(),
+    });
+    bar.finish();
+    let records = records?;
+    if interrupt.is_pressed() {
+        return Ok(ExitCode::from(interrupt::EXIT_CODE));
+    }
+    if !arguments.quiet {
+        say::line(format!("{}: {} runs of {}", out.display(), records.len(), campaign.name));
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// `out/fig7` for `configs/fig7.ron`.
+fn default_folder(file: &Path) -> PathBuf {
+    Path::new("out").join(file.file_stem().unwrap_or_default())
+}

@@ -1,0 +1,40 @@
+//! Hashes of all that a run is a function of.
+
+use sha2::{Digest as _, Sha256};
+use std::fmt::Write;
+
+/// A hash over parts; where one ends and the next begins is a part of it.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Digest(Sha256);
+
+impl Digest {
+    /// Adds a part.
+    #[must_use]
+    pub(crate) fn with(mut self, part: impl AsRef<[u8]>) -> Self {
+        let part = part.as_ref();
+        self.0.update((part.len() as u64).to_le_bytes());
+        self.0.update(part);
+        self
+    }
+
+    /// Adds numbers, to their last bit.
+    #[must_use]
+    pub(crate) fn with_numbers(self, numbers: &[f64]) -> Self {
+        let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
+        self.with(bytes)
+    }
+
+    /// The hash, as 32 hexadecimal digits.
+    pub(crate) fn finish(self) -> String {
+        let mut text = String::new();
+        for byte in &self.0.finalize()[..16] {
+            let _ = write!(text, "{byte:02x}");
+        }
+        text
+    }
+}
+
+/// The checksum of a line.
+pub(crate) fn checksum(line: &str) -> String {
+    Digest::default().with(line).finish()
+}

@@ -1,0 +1,129 @@
+//! One run.
+
+use super::paths::{Paths, millimetres, rounded};
+use super::plan::{Job, Plan};
+use super::record::{RunRecord, Value, values};
+use anyhow::Result;
+use covmap_explore::{
+    Accuracy, Config, Ending, Event, Limits, Mission, SimulatedRobot, Summary, Tally, TraceHasher,
+    TraceHeader, Truth, corners, explore,
+};
+use covmap_plan::Strategy;
+use covmap_world::{Extent, Scenario, Surface, World};
+use indexmap::IndexMap;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+
+/// The share of explored cells is looked at again after so many metres …
+const LOOK_AFTER: f64 = 0.5;
+/// … or after this share of the path so far, whichever is more.
+const LOOK_AFTER_SHARE: f64 = 0.01;
+
+/// A run that came to its end.
+pub(crate) struct Done {
+    pub(crate) record: RunRecord,
+    pub(crate) paths: Option<Paths>,
+}
+
+/// Does one run; `None` if it is told to stop before its end.
+pub(crate) fn execute(
+    plan: &Plan,
+    job: &Job,
+    watch: &dyn Fn() -> ControlFlow<()>,
+) -> Result<Option<Done>> {
+    let mission = plan.mission(job)?;
+    let world = &plan.cases[job.case].world;
+    let key = job.planned.key.clone();
+    let out = measure(world, &mission, key.seed, plan.keep_paths, watch)?;
+    Ok(out.map(|(values, times, paths)| Done { record: RunRecord { key, values, times }, paths }))
+}
+
+type Measured = (IndexMap<String, Value>, IndexMap<String, f64>, Option<Paths>);
+
+fn measure(
+    world: &World,
+    mission: &Mission,
+    seed: u64,
+    keep_paths: bool,
+    watch: &dyn Fn() -> ControlFlow<()>,
+) -> Result<Option<Measured>> {
+    let begun = Instant::now();
+    let truth = Truth::new(world, mission);
+    let prepared = begun.elapsed();
+    let mut hasher = TraceHasher::default();
+    hasher.add(&TraceHeader::new(mission, world.name(), seed));
+    let mut robot = SimulatedRobot::new(world, &mission.config, seed)?;
+    let mut tally = Tally::new(mission)?;
+    let mut deciding = Duration::ZERO;
+    let (mut explored, mut look_at) = (Vec::new(), 0.0);
+    // The time of what is done here is not the run's.
+    let mut aside = Duration::ZERO;
+    let begun = Instant::now();
+    let mut last = Instant::now();
+    let run = explore(mission, &mut robot, &mut |event, view| {
+        let now = Instant::now();
+        hasher.add(event);
+        match event {
+            Event::Decision { .. } => deciding += now - last,
+            Event::Scan { scan, .. } => tally.add(view.map, scan),
+            Event::Bump { .. } | Event::End { .. } => {}
+        }
+        let over = matches!(event, Event::End { .. });
+        if keep_paths && (view.path_length >= look_at || over) {
+            let share = truth.share_explored(view.map, mission);
+            explored.push((rounded(view.path_length, 1e3), rounded(share, 1e6)));
+            look_at = view.path_length + LOOK_AFTER.max(LOOK_AFTER_SHARE * view.path_length);
+        }
+        last = Instant::now();
+        aside += last - now;
+        watch()
+    })?;
+    if run.ending == Ending::Interrupted {
+        return Ok(None);
+    }
+    let seconds = (begun.elapsed().saturating_sub(aside)).as_secs_f64();
+    let scoring = Instant::now();
+    hasher.add_bytes(&run.map.to_bytes());
+    let scored = truth.scored_cells(world, mission, &run);
+    let score = truth.score(&run.map, &scored);
+    let accuracy = Accuracy::new(&truth, mission, &run.map, &scored);
+    let strategy = &mission.config.planner.strategy;
+    let hash = hasher.finish();
+    let summary = Summary::new(world.name(), strategy, seed, &run, &score, seconds, hash);
+    let mut all = values(&summary)?;
+    let extra = accuracy.named().into_iter().chain(tally.finish(&truth.observable).named());
+    all.extend(extra.map(|(name, number)| (name.to_owned(), Value::Number(number))));
+    let scoring = prepared + scoring.elapsed() + aside;
+    let times = [
+        ("seconds", seconds),
+        ("deciding_seconds", deciding.as_secs_f64()),
+        ("scoring_seconds", scoring.as_secs_f64()),
+    ];
+    let times = times.map(|(name, time)| (name.to_owned(), time)).into_iter().collect();
+    let place = |scan: &covmap_sonar::Scan| millimetres(scan.pose.translation.vector.into());
+    let paths = keep_paths.then(|| Paths {
+        driven: corners(&run.trajectory).into_iter().map(millimetres).collect(),
+        scans: run.scans.iter().map(place).collect(),
+        explored,
+    });
+    Ok(Some((all, times, paths)))
+}
+
+/// The names of all numbers that are measured of a run, in the order of the columns of
+/// `runs.csv`: those of a run in an empty closet.
+pub(crate) fn numbers() -> Vec<String> {
+    let extent = Extent { width: 1.0, height: 1.0 };
+    let closet = Scenario { name: "closet".into(), extent, start: None, obstacles: vec![] };
+    let mut config = Config::b21r();
+    config.resolution = 0.2;
+    config.planner.strategy = Strategy::Cl;
+    let limits = Limits { max_scans: Some(1), ..Limits::default() };
+    let measured = || -> Result<Option<Measured>> {
+        let world = World::from_scenario(&closet, Surface::Rough)?;
+        let mission = Mission::new(&world, &config, None, limits)?;
+        measure(&world, &mission, 1, false, &|| ControlFlow::Continue(()))
+    };
+    let values = measured().ok().flatten().map(|(values, ..)| values).unwrap_or_default();
+    let is_number = |(_, value): &(String, Value)| matches!(value, Value::Number(_));
+    values.into_iter().filter(is_number).map(|(name, _)| name).collect()
+}

@@ -1,0 +1,317 @@
+//! The folder of a campaign: a list of its runs, and a file for each run that is done.
+//!
+//! The file of a run is there whole or not at all. Each of its three lines has its own
+//! checksum: what came out, how long it took, and the paths or `null`.
+
+use super::digest::{Digest, checksum};
+use super::paths::Paths;
+use super::record::{RunKey, RunRecord, Value};
+use crate::input::about;
+use anyhow::{Result, anyhow, bail};
+use covmap_io::{read_json, write_json};
+use indexmap::IndexMap;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use std::fs::{self, File, TryLockError};
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+
+const FORMAT: u32 = 1;
+const LIST: &str = "campaign.json";
+const RUNS: &str = "runs";
+const LOCK: &str = "lock";
+
+/// A run that is to be done.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Planned {
+    /// Which.
+    pub(crate) key: RunKey,
+    /// A hash of all that it is a function of; it names the run's file.
+    pub(crate) id: String,
+}
+
+/// What a campaign is, without what it is made from.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Manifest {
+    /// The version of this format.
+    covmap_campaign: u32,
+    /// What the campaign is called.
+    pub(crate) name: String,
+    /// A hash of all runs, but for the program that does them.
+    campaign: String,
+    /// The program.
+    pub(crate) version: String,
+    /// What is summarised.
+    pub(crate) metrics: Vec<String>,
+    /// All runs, in order.
+    pub(crate) runs: Vec<Planned>,
+}
+
+impl Manifest {
+    /// A campaign whose runs have names that do not depend on the program yet.
+    pub(crate) fn new(name: &str, metrics: &[String], runs: Vec<Planned>, version: &str) -> Self {
+        let mut all = metrics.iter().fold(Digest::default().with(name), Digest::with);
+        for Planned { key, id } in &runs {
+            all = all.with(key.to_string()).with(id);
+        }
+        let named = |Planned { key, id }| {
+            let id = Digest::default().with(FORMAT.to_le_bytes()).with(version).with(id).finish();
+            Planned { key, id }
+        };
+        Self {
+            covmap_campaign: FORMAT,
+            name: name.to_owned(),
+            campaign: all.finish(),
+            version: version.to_owned(),
+            metrics: metrics.to_vec(),
+            runs: runs.into_iter().map(named).collect(),
+        }
+    }
+
+    /// The list in a folder; none if there is none.
+    pub(crate) fn read(dir: &Path) -> Result<Option<Self>> {
+        let file = dir.join(LIST);
+        if !file.exists() {
+            return Ok(None);
+        }
+        let manifest: Self = read_json(&file)?;
+        let format = manifest.covmap_campaign;
+        if format != FORMAT {
+            bail!("{}: a campaign of format {format}; this covmap has {FORMAT}", file.display());
+        }
+        Ok(Some(manifest))
+    }
+
+    /// Whether both are the same campaign, whichever program does it.
+    pub(crate) fn is_campaign(&self, other: &Self) -> bool {
+        self.campaign == other.campaign
+    }
+}
+
+/// A folder that this process alone writes.
+#[derive(Debug)]
+pub(crate) struct Folder {
+    dir: PathBuf,
+    _lock: File,
+}
+
+/// What came out, with the name of the file that it belongs in.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Outcome {
+    id: String,
+    key: RunKey,
+    values: IndexMap<String, Value>,
+}
+
+impl Folder {
+    /// Makes a folder for a campaign, or goes on in one of the same campaign.
+    ///
+    /// # Errors
+    /// If something else is there, or another process writes it. Then nothing has changed.
+    pub(crate) fn open(dir: &Path, manifest: &Manifest) -> Result<Self> {
+        match Manifest::read(dir)? {
+            Some(present) if !present.is_campaign(manifest) => bail!(
+                "{}: holds the results of another campaign ({}), or of this one before it was \
+                 changed; name another folder with --out",
+                dir.display(),
+                present.name
+            ),
+            None if is_foreign(dir)? => {
+                bail!("{}: is no folder of a campaign; name another with --out", dir.display())
+            }
+            _ => {}
+        }
+        let runs = dir.join(RUNS);
+        fs::create_dir_all(&runs).map_err(|error| cannot(&runs, "made", &error))?;
+        let lock = lock(dir)?;
+        for entry in fs::read_dir(&runs).map_err(|error| cannot(&runs, "read", &error))?.flatten() {
+            if entry.path().extension().is_some_and(|extension| extension == "partial") {
+                // What was in flight when a process was killed.
+                let _ = fs::remove_file(entry.path());
+            }
+        }
+        let folder = Self { dir: dir.to_owned(), _lock: lock };
+        if Manifest::read(dir)?.as_ref() != Some(manifest) {
+            let list = dir.join(LIST);
+            let partial = list.with_extension("partial");
+            write_json(&partial, manifest)?;
+            fs::rename(&partial, &list).map_err(|error| cannot(&list, "written", &error))?;
+        }
+        Ok(folder)
+    }
+
+    /// How many files of other versions of the program are there.
+    pub(crate) fn strangers(&self, manifest: &Manifest) -> Result<usize> {
+        let ids: std::collections::BTreeSet<&str> =
+            manifest.runs.iter().map(|run| run.id.as_str()).collect();
+        let runs = self.dir.join(RUNS);
+        let entries = fs::read_dir(&runs).map_err(|error| cannot(&runs, "read", &error))?;
+        let known = |entry: &fs::DirEntry| {
+            entry.path().file_stem().and_then(|id| id.to_str()).is_some_and(|id| ids.contains(id))
+        };
+        Ok(entries.flatten().filter(|entry| !known(entry)).count())
+    }
+
+    /// Writes the file of a run; it is on the disk when this returns.
+    pub(crate) fn write(&self, id: &str, record: &RunRecord, paths: Option<&Paths>) -> Result<()> {
+        let RunRecord { key, values, times } = record.clone();
+        let outcome = Outcome { id: id.to_owned(), key, values };
+        let lines = [
+            serde_json::to_string(&outcome)?,
+            serde_json::to_string(&times)?,
+            serde_json::to_string(&paths)?,
+        ];
+        let text: String =
+            lines.iter().map(|line| format!("{} {line}\n", checksum(line))).collect();
+        let file = file(&self.dir, id);
+        let partial = file.with_extension("partial");
+        let written = (|| {
+            let mut out = File::create(&partial)?;
+            out.write_all(text.as_bytes())?;
+            out.sync_all()?;
+            fs::rename(&partial, &file)?;
+            // The name is on the disk as well, where the system can do that.
+            File::open(self.dir.join(RUNS)).and_then(|runs| runs.sync_all()).or(Ok(()))
+        })();
+        written.map_err(|error: std::io::Error| {
+            let _ = fs::remove_file(&partial);
+            cannot(&file, "written", &error)
+        })
+    }
+}
+
+/// A run that is recorded, or not, or not any longer.
+#[derive(Debug)]
+pub(crate) enum Recorded {
+    Whole(RunRecord),
+    Missing,
+    /// Its file is damaged.
+    Damaged(PathBuf),
+}
+
+/// What is recorded of a run; its paths are looked at only if they are wanted.
+pub(crate) fn read(dir: &Path, planned: &Planned, with_paths: bool) -> Recorded {
+    let file = file(dir, &planned.id);
+    match File::open(&file) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Recorded::Missing,
+        Err(_) => return Recorded::Damaged(file),
+        Ok(_) => {}
+    }
+    let record = (|| {
+        let mut lines = Lines::open(&file)?;
+        let outcome: Outcome = lines.next()?;
+        let times = lines.next()?;
+        if with_paths {
+            lines.next::<Option<Paths>>()?;
+        }
+        let same = outcome.id == planned.id && outcome.key == planned.key;
+        same.then_some(RunRecord { key: outcome.key, values: outcome.values, times })
+    })();
+    record.map_or(Recorded::Damaged(file), Recorded::Whole)
+}
+
+/// All recorded runs of a campaign, in its order, and the files that are damaged.
+pub(crate) fn read_all(dir: &Path, manifest: &Manifest) -> (Vec<RunRecord>, Vec<PathBuf>) {
+    let all: Vec<Recorded> =
+        manifest.runs.par_iter().map(|planned| read(dir, planned, false)).collect();
+    let (mut records, mut damaged) = (Vec::new(), Vec::new());
+    for recorded in all {
+        match recorded {
+            Recorded::Whole(record) => records.push(record),
+            Recorded::Damaged(file) => damaged.push(file),
+            Recorded::Missing => {}
+        }
+    }
+    (records, damaged)
+}
+
+/// All recorded runs in the folder of a campaign, in its order.
+///
+/// # Errors
+/// If it is no folder of a campaign, or the file of a run is damaged.
+pub(crate) fn load(dir: &Path) -> Result<Vec<RunRecord>> {
+    let none = || anyhow!("{}: is no folder of a campaign", dir.display());
+    let manifest = Manifest::read(dir)?.ok_or_else(none)?;
+    let (records, damaged) = read_all(dir, &manifest);
+    match damaged.first() {
+        Some(file) => bail!("{}: is damaged; run the campaign again", file.display()),
+        None => Ok(records),
+    }
+}
+
+/// The paths of a run in the folder of a campaign that keeps them.
+///
+/// # Errors
+/// If there is no such run, if it has no paths, or if its file is damaged.
+pub(crate) fn load_paths(dir: &Path, key: &RunKey) -> Result<Paths> {
+    let none = || anyhow!("{}: has no paths of {key}", dir.display());
+    let manifest = Manifest::read(dir)?.ok_or_else(none)?;
+    let planned = manifest.runs.iter().find(|run| run.key == *key).ok_or_else(none)?;
+    let paths = Lines::open(&file(dir, &planned.id)).and_then(|mut lines| {
+        lines.next::<Outcome>()?;
+        lines.next::<IndexMap<String, f64>>()?;
+        lines.next::<Option<Paths>>()?
+    });
+    paths.ok_or_else(none)
+}
+
+/// The lines of a file, each checked.
+struct Lines(BufReader<File>);
+
+impl Lines {
+    fn open(file: &Path) -> Option<Self> {
+        Some(Self(BufReader::new(File::open(file).ok()?)))
+    }
+
+    fn next<T: serde::de::DeserializeOwned>(&mut self) -> Option<T> {
+        let mut text = String::new();
+        self.0.read_line(&mut text).ok()?;
+        let (sum, line) = text.strip_suffix('\n')?.split_once(' ')?;
+        let good = sum == checksum(line);
+        good.then(|| serde_json::from_str(line).ok()).flatten()
+    }
+}
+
+fn file(dir: &Path, id: &str) -> PathBuf {
+    dir.join(RUNS).join(format!("{id}.run"))
+}
+
+/// Copies the file of a run from one folder into another.
+pub(crate) fn copy(from: &Path, to: &Folder, id: &str) -> Result<()> {
+    let (from, to) = (file(from, id), file(&to.dir, id));
+    let partial = to.with_extension("partial");
+    let copied = fs::copy(&from, &partial).and_then(|_| fs::rename(&partial, &to));
+    copied.map_err(|error| cannot(&to, "written", &error))
+}
+
+/// Whether something is there that no campaign wrote.
+fn is_foreign(dir: &Path) -> Result<bool> {
+    match fs::read_dir(dir) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(false),
+        Err(error) => Err(about(dir)(format!("cannot be read: {error}"))),
+        // A process that was killed early left no more than these.
+        Ok(entries) => {
+            let ours = [RUNS, LOCK, "campaign.partial"];
+            Ok(entries.flatten().any(|e| !ours.iter().any(|name| e.file_name() == *name)))
+        }
+    }
+}
+
+fn lock(dir: &Path) -> Result<File> {
+    let path = dir.join(LOCK);
+    let lock = File::create(&path).map_err(|error| cannot(&path, "written", &error))?;
+    match lock.try_lock() {
+        Err(TryLockError::WouldBlock) => {
+            bail!("{}: another covmap is writing into this folder", dir.display())
+        }
+        // There are file systems without locks.
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(lock),
+    }
+}
+
+fn cannot(path: &Path, action: &str, error: &std::io::Error) -> anyhow::Error {
+    anyhow!("{}: cannot be {action}: {error}", path.display())
+}

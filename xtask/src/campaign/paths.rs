@@ -1,0 +1,27 @@
+//! Where a run led, and what was explored along the way.
+
+use nalgebra::Point2;
+use serde::{Deserialize, Serialize};
+
+/// The paths of a run, in metres, to the millimetre.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Paths {
+    /// The corners of the driven path.
+    pub(crate) driven: Vec<(f64, f64)>,
+    /// Where it was measured.
+    pub(crate) scans: Vec<(f64, f64)>,
+    /// Length of the path so far, and the share of the observable cells that are known with
+    /// an entropy of at most ε; some hundred points.
+    pub(crate) explored: Vec<(f64, f64)>,
+}
+
+/// A point, to the millimetre.
+pub(crate) fn millimetres(point: Point2<f64>) -> (f64, f64) {
+    (rounded(point.x, 1e3), rounded(point.y, 1e3))
+}
+
+/// A number to so many parts of one.
+pub(crate) fn rounded(value: f64, parts: f64) -> f64 {
+    (value * parts).round() / parts
+}

@@ -1,0 +1,321 @@
+//! All runs of a campaign, checked before any of them starts.
+
+use super::digest::Digest;
+use super::file::{Campaign, NamedWorld, Setting};
+use super::folder::{Manifest, Planned};
+use super::record::RunKey;
+use super::version::VERSION;
+use crate::input::{self, about};
+use anyhow::{Result, anyhow, bail};
+use covmap::Raster;
+use covmap_explore::{Config, Limits, Mission};
+use covmap_io::{load_map_server, read_ron};
+use covmap_plan::Strategy;
+use covmap_world::{Scenario, World};
+use nalgebra::Isometry2;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+/// The most runs of one campaign.
+const MOST_RUNS: usize = 100_000;
+
+/// Every N-th run only: 2/3 are the runs 1, 4, 7 … of those counted from 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Shard {
+    number: usize,
+    of: usize,
+}
+
+impl Shard {
+    /// All runs.
+    pub(crate) const WHOLE: Self = Self { number: 1, of: 1 };
+
+    /// Whether the shard has a run.
+    pub(crate) fn has(self, index: usize) -> bool {
+        index % self.of == self.number - 1
+    }
+}
+
+impl FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers = text.split_once('/').and_then(|(number, of)| {
+            Some(Self { number: number.trim().parse().ok()?, of: of.trim().parse().ok()? })
+        });
+        match numbers {
+            Some(shard) if (1..=shard.of).contains(&shard.number) => Ok(shard),
+            _ => Err("a shard is I/N with 1 ≤ I ≤ N, as in 2/3".to_owned()),
+        }
+    }
+}
+
+/// A world with a setting, and the robot's starts in it.
+#[derive(Debug)]
+pub(crate) struct Case {
+    pub(crate) world: World,
+    /// The world's file, for errors.
+    file: PathBuf,
+    pub(crate) config: Config,
+    /// The configuration's file, for errors.
+    name: PathBuf,
+    pub(crate) limits: Limits,
+    pub(crate) starts: Vec<Isometry2<f64>>,
+    /// The hash of the world's files, and how it is moved.
+    digest: Digest,
+}
+
+/// One run.
+#[derive(Debug)]
+pub(crate) struct Job {
+    pub(crate) planned: Planned,
+    /// Which of the cases.
+    pub(crate) case: usize,
+    pub(crate) strategy: Strategy,
+}
+
+/// All runs of a campaign, in order.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    pub(crate) manifest: Manifest,
+    pub(crate) cases: Vec<Case>,
+    pub(crate) jobs: Vec<Job>,
+    pub(crate) keep_paths: bool,
+    /// The worlds that are left out because their files are not there.
+    pub(crate) left_out: Vec<PathBuf>,
+}
+
+impl Plan {
+    /// Finds all runs, and what is wrong with any of them.
+    pub(crate) fn new(campaign: &Campaign) -> Result<Self> {
+        check_lists(campaign)?;
+        let (mut cases, mut jobs, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+        for world in &campaign.worlds {
+            if world.optional && !world.file.exists() {
+                left_out.push(world.file.clone());
+                continue;
+            }
+            let source = Source::read(world)?;
+            for setting in &campaign.settings {
+                let case = source.case(world, setting, campaign)?;
+                let strategies = setting.strategies.as_ref().unwrap_or(&campaign.strategies);
+                case.check(strategies)?;
+                cases.push(case);
+                add_jobs(&mut jobs, &cases, (world, setting, strategies), campaign)?;
+            }
+        }
+        if jobs.is_empty() {
+            bail!("no world of the campaign is there, so there is nothing to run");
+        }
+        let manifest = manifest(campaign, &jobs)?;
+        Ok(Self { manifest, cases, jobs, keep_paths: campaign.keep_paths, left_out })
+    }
+
+    /// The mission of a run.
+    pub(crate) fn mission(&self, job: &Job) -> Result<Mission> {
+        let case = &self.cases[job.case];
+        case.mission(job.strategy, case.starts[job.planned.key.start])
+    }
+}
+
+/// What can be seen without opening any other file.
+fn check_lists(campaign: &Campaign) -> Result<()> {
+    let Campaign { worlds, settings, seeds, .. } = campaign;
+    if !(1..=MOST_RUNS).contains(&seeds.count) {
+        bail!("seeds: {} are asked for; the number must lie in 1..={MOST_RUNS}", seeds.count);
+    }
+    if seeds.first.checked_add(seeds.count as u64).is_none() {
+        bail!("seeds: there are not that many after {}", seeds.first);
+    }
+    names("name", [&campaign.name])?;
+    names("worlds", worlds.iter().map(|world| &world.name))?;
+    names("settings", settings.iter().map(|setting| &setting.name))?;
+    let with_own = |setting: &&Setting| setting.strategies.is_some();
+    let own = settings.iter().filter(with_own).filter_map(|s| s.strategies.as_ref());
+    let common = settings.iter().any(|setting| setting.strategies.is_none());
+    for strategies in own.chain(common.then_some(&campaign.strategies)) {
+        for strategy in strategies {
+            strategy.validate().map_err(|error| anyhow!("strategies: {error}"))?;
+        }
+        unique("strategies", strategies.iter().map(ToString::to_string))?;
+    }
+    unique("metrics", campaign.metrics.iter().cloned())?;
+    let known = super::execute::numbers();
+    for metric in &campaign.metrics {
+        if !known.contains(metric) {
+            bail!("metrics: {metric:?} is none; they are {}", known.join(", "));
+        }
+    }
+    Ok(())
+}
+
+/// Names must be there, fit into a table, and differ.
+fn names<'a>(what: &str, names: impl IntoIterator<Item = &'a String>) -> Result<()> {
+    let names: Vec<&String> = names.into_iter().collect();
+    let good = |name: &&&String| {
+        !(1..=100).contains(&name.chars().count()) || name.chars().any(char::is_control)
+    };
+    if let Some(name) = names.iter().find(good) {
+        bail!("{what}: {name:?} is no name: 1 to 100 characters are needed");
+    }
+    unique(what, names.into_iter().cloned())
+}
+
+/// A list must have entries, each once.
+fn unique(what: &str, entries: impl Iterator<Item = String>) -> Result<()> {
+    let mut entries: Vec<String> = entries.collect();
+    if entries.is_empty() {
+        bail!("{what}: at least one is needed");
+    }
+    entries.sort_unstable();
+    match entries.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => bail!("{what}: {} stands there twice", pair[0]),
+        None => Ok(()),
+    }
+}
+
+/// A world's file, read.
+struct Source {
+    kind: Kind,
+    digest: Digest,
+}
+
+enum Kind {
+    Scenario(Scenario),
+    MapServer,
+}
+
+impl Source {
+    fn read(world: &NamedWorld) -> Result<Self> {
+        let NamedWorld { file, turn, shift, .. } = world;
+        let moves = [*turn, shift.0, shift.1];
+        if !moves.iter().all(|v| v.is_finite()) || shift.0 < 0.0 || shift.1 < 0.0 {
+            bail!("worlds: {}: turn and shift must be finite, the shift not negative", world.name);
+        }
+        let bytes = |path: &Path| std::fs::read(path).map_err(about(path));
+        if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {
+            let scenario: Scenario = read_ron(file)?;
+            let digest = Digest::default().with(bytes(file)?).with_numbers(&moves);
+            return Ok(Self { kind: Kind::Scenario(scenario), digest });
+        }
+        if moves != [0.0; 3] {
+            bail!("worlds: {}: only scenarios can be turned and shifted", world.name);
+        }
+        // What is no map of map_server is refused when the world is made of it.
+        let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        let digest = if ["yaml", "yml"].contains(&extension.as_str()) {
+            map_digest(&load_map_server(file)?.solid())
+        } else {
+            Digest::default()
+        };
+        Ok(Self { kind: Kind::MapServer, digest })
+    }
+
+    fn case(&self, named: &NamedWorld, setting: &Setting, campaign: &Campaign) -> Result<Case> {
+        let name = &setting.config;
+        let (config, _) = input::config(Some(name))?;
+        let mut config = setting
+            .overrides
+            .iter()
+            .try_fold(config, |config, (path, value)| config.overridden(path, value))
+            .map_err(|error| anyhow!("settings: {}: overrides: {error}", setting.name))?;
+        config.resolution = named.resolution.unwrap_or(config.resolution);
+        input::check(&config, name)?;
+        let (file, surface) = (&named.file, config.sonar.surface);
+        let world = match &self.kind {
+            Kind::MapServer => input::world(file, surface)?,
+            Kind::Scenario(scenario) => {
+                input::moved(scenario, named.turn.to_radians(), named.shift, (file, surface))?
+            }
+        };
+        let starts = named.starts.as_ref().unwrap_or(&campaign.starts);
+        let starts = starts.poses(&world, config.robot.radius).map_err(about(file))?;
+        let Setting { while_driving, max_scans, .. } = *setting;
+        let limits = Limits { while_driving, max_scans };
+        let (file, name) = (file.clone(), name.clone());
+        Ok(Case { world, file, config, name, limits, starts, digest: self.digest.clone() })
+    }
+}
+
+/// The cells of a map say all that its two files do.
+fn map_digest(solid: &Raster<bool>) -> Digest {
+    let (grid, low) = (solid.grid(), solid.grid().lower_left());
+    let cells: Vec<u8> = solid.values().iter().map(|solid| u8::from(*solid)).collect();
+    let numbers = [low.x, low.y, grid.resolution()];
+    Digest::default().with_numbers(&numbers).with(grid.width().to_string()).with(cells)
+}
+
+impl Case {
+    fn mission(&self, strategy: Strategy, start: Isometry2<f64>) -> Result<Mission> {
+        let mut config = self.config.clone();
+        config.planner.strategy = strategy;
+        let (world, config) = ((&self.world, self.file.as_path()), (&config, self.name.as_path()));
+        input::mission(world, config, Some(start), self.limits)
+    }
+
+    /// Finds what is wrong with any run: a start depends on no strategy.
+    fn check(&self, strategies: &[Strategy]) -> Result<()> {
+        for start in &self.starts {
+            self.mission(strategies[0], *start)?;
+        }
+        strategies.iter().try_for_each(|s| self.mission(*s, self.starts[0]).map(|_| ()))
+    }
+
+    /// The hash of all that a run is a function of but the program and its seed.
+    fn digest(&self, strategy: Strategy, start: &Isometry2<f64>) -> Result<Digest> {
+        let mut config = self.config.clone();
+        config.planner.strategy = strategy;
+        let at = start.translation.vector;
+        Ok(self
+            .digest
+            .clone()
+            .with(serde_json::to_vec(&config)?)
+            .with(serde_json::to_vec(&self.limits)?)
+            .with_numbers(&[at.x, at.y, start.rotation.angle()]))
+    }
+}
+
+fn add_jobs(
+    jobs: &mut Vec<Job>,
+    cases: &[Case],
+    (world, setting, strategies): (&NamedWorld, &Setting, &[Strategy]),
+    campaign: &Campaign,
+) -> Result<()> {
+    let (case, seeds) = (cases.len() - 1, campaign.seeds);
+    let starts = &cases[case].starts;
+    let more = strategies.len().saturating_mul(starts.len()).saturating_mul(seeds.count);
+    if jobs.len().saturating_add(more) > MOST_RUNS {
+        bail!("the campaign has more than {MOST_RUNS} runs; divide it into several");
+    }
+    for &strategy in strategies {
+        for (start, pose) in starts.iter().enumerate() {
+            let digest = cases[case].digest(strategy, pose)?;
+            for seed in (seeds.first..).take(seeds.count) {
+                let key = RunKey {
+                    world: world.name.clone(),
+                    setting: setting.name.clone(),
+                    strategy: strategy.to_string(),
+                    start,
+                    seed,
+                };
+                let keep = [u8::from(campaign.keep_paths)];
+                let id = digest.clone().with(seed.to_le_bytes()).with(keep).finish();
+                jobs.push(Job { planned: Planned { key, id }, case, strategy });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// The list of all runs. Until here a run's name says nothing of the program.
+fn manifest(campaign: &Campaign, jobs: &[Job]) -> Result<Manifest> {
+    let mut seen: BTreeMap<&str, &RunKey> = BTreeMap::new();
+    for Job { planned, .. } in jobs {
+        if let Some(other) = seen.insert(&planned.id, &planned.key) {
+            bail!("a run stands there twice: {other} is the same as {}", planned.key);
+        }
+    }
+    let runs: Vec<Planned> = jobs.iter().map(|job| job.planned.clone()).collect();
+    Ok(Manifest::new(&campaign.name, &campaign.metrics, runs, VERSION))
+}

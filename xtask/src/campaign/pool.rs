@@ -1,0 +1,138 @@
+//! Running what is missing, in parallel.
+
+use super::execute::execute;
+use super::file::Campaign;
+use super::folder::{self, Folder, Recorded};
+use super::plan::{Job, Plan, Shard};
+use super::record::{RunKey, RunRecord};
+use super::tables;
+use crate::interrupt::Interrupt;
+use anyhow::{Result, anyhow};
+use std::num::NonZeroUsize;
+use std::ops::ControlFlow;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+/// How a campaign is run.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Options<'a> {
+    /// So many runs at the same time.
+    pub(crate) jobs: NonZeroUsize,
+    /// Which runs.
+    pub(crate) shard: Shard,
+    /// The folder of the campaign.
+    pub(crate) out: &'a Path,
+    /// Stops it in good order.
+    pub(crate) interrupt: &'a Interrupt,
+}
+
+/// What is told while a campaign goes on.
+#[derive(Debug)]
+pub(crate) enum Step<'a> {
+    /// So many runs of so many are recorded already.
+    Begin { recorded: usize, of: usize },
+    /// Something to know.
+    Note(String),
+    /// A run is done and recorded.
+    Done(&'a RunKey),
+}
+
+/// Runs what is not recorded yet, writes the tables, and returns all recorded runs of the
+/// shard, in the order of the campaign. After Ctrl-C these are not all.
+///
+/// # Errors
+/// If anything is wrong with the campaign or the folder: then nothing was run. If a result
+/// cannot be written: what is done is intact.
+pub(crate) fn run(
+    campaign: &Campaign,
+    options: &Options<'_>,
+    tell: &(dyn Fn(&Step<'_>) + Sync),
+) -> Result<Vec<RunRecord>> {
+    let plan = Plan::new(campaign)?;
+    let folder = Folder::open(options.out, &plan.manifest)?;
+    for file in &plan.left_out {
+        tell(&Step::Note(format!("{}: is not there, and is left out", file.display())));
+    }
+    let strangers = folder.strangers(&plan.manifest)?;
+    if strangers > 0 {
+        tell(&Step::Note(format!(
+            "{}: {strangers} files are of another version of covmap, and are not used",
+            options.out.display()
+        )));
+    }
+    let mine: Vec<&Job> = (0..plan.jobs.len())
+        .filter(|index| options.shard.has(*index))
+        .map(|index| &plan.jobs[index])
+        .collect();
+    let missing = missing(&mine, &plan, options.out, tell);
+    tell(&Step::Begin { recorded: mine.len() - missing.len(), of: mine.len() });
+    work(&plan, &missing, &folder, options, tell)?;
+    let (records, _) = folder::read_all(options.out, &plan.manifest);
+    tables::write(options.out, &plan.manifest.metrics, &records)?;
+    let keys: std::collections::BTreeSet<&RunKey> =
+        mine.iter().map(|job| &job.planned.key).collect();
+    Ok(records.into_iter().filter(|record| keys.contains(&record.key)).collect())
+}
+
+/// The runs that are not recorded, or whose files are damaged.
+fn missing<'a>(
+    jobs: &[&'a Job],
+    plan: &Plan,
+    out: &Path,
+    tell: &(dyn Fn(&Step<'_>) + Sync),
+) -> Vec<&'a Job> {
+    let is_missing = |job: &&&Job| match folder::read(out, &job.planned, plan.keep_paths) {
+        Recorded::Whole(_) => false,
+        Recorded::Missing => true,
+        Recorded::Damaged(file) => {
+            let note = format!("{}: is damaged; the run is done again", file.display());
+            tell(&Step::Note(note));
+            true
+        }
+    };
+    jobs.iter().filter(is_missing).copied().collect()
+}
+
+/// Each worker takes the next run and does all of it by itself.
+fn work(
+    plan: &Plan,
+    jobs: &[&Job],
+    folder: &Folder,
+    options: &Options<'_>,
+    tell: &(dyn Fn(&Step<'_>) + Sync),
+) -> Result<()> {
+    let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let error = Mutex::new(None);
+    let stop = || failed.load(Ordering::SeqCst) || options.interrupt.is_pressed();
+    let watch = || if stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
+    let one = |job: &Job| -> Result<()> {
+        if let Some(done) = execute(plan, job, &watch)? {
+            folder.write(&job.planned.id, &done.record, done.paths.as_ref())?;
+            tell(&Step::Done(&job.planned.key));
+        }
+        Ok(())
+    };
+    let worker = || {
+        while !stop() {
+            let Some(job) = jobs.get(next.fetch_add(1, Ordering::SeqCst)) else { break };
+            if let Err(wrong) = one(job) {
+                failed.store(true, Ordering::SeqCst);
+                if let Ok(mut error) = error.lock() {
+                    error.get_or_insert(wrong);
+                }
+            }
+        }
+    };
+    let workers = options.jobs.get().min(jobs.len());
+    let pools = (0..workers)
+        .map(|_| rayon::ThreadPoolBuilder::new().num_threads(1).build())
+        .collect::<Result<Vec<_>, _>>()?;
+    std::thread::scope(|scope| {
+        for pool in &pools {
+            scope.spawn(|| pool.install(worker));
+        }
+    });
+    let error = error.into_inner().map_err(|_| anyhow!("a worker stopped"))?;
+    error.map_or(Ok(()), Err)
+}

@@ -1,0 +1,98 @@
+//! What is recorded of a run.
+
+use anyhow::Result;
+use covmap_explore::Summary;
+use indexmap::IndexMap;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// Which run of a campaign.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RunKey {
+    /// The name of the world.
+    pub(crate) world: String,
+    /// The name of the setting.
+    pub(crate) setting: String,
+    /// The strategy as in Fig. 7.
+    pub(crate) strategy: String,
+    /// Which start in the world, from 0.
+    pub(crate) start: usize,
+    /// Seed of the noise.
+    pub(crate) seed: u64,
+}
+
+/// A recorded run. All but the times is a function of the campaign and the program.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RunRecord {
+    /// Which.
+    pub(crate) key: RunKey,
+    /// What came out, by name, in the order of the columns of `runs.csv`.
+    pub(crate) values: IndexMap<String, Value>,
+    /// How long it took \[s\], by name.
+    pub(crate) times: IndexMap<String, f64>,
+}
+
+/// A number or a text.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub(crate) enum Value {
+    /// A number.
+    Number(f64),
+    /// A text.
+    Text(String),
+}
+
+impl RunRecord {
+    /// The number with a name.
+    pub(crate) fn number(&self, name: &str) -> Option<f64> {
+        match self.values.get(name) {
+            Some(Value::Number(number)) => Some(*number),
+            Some(Value::Text(_)) | None => None,
+        }
+    }
+}
+
+impl fmt::Display for RunKey {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { world, setting, strategy, start, seed } = self;
+        write!(f, "{world}, {setting}, {strategy}, start {start}, seed {seed}")
+    }
+}
+
+impl fmt::Display for Value {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            // Rust prints as many digits as bring the number back.
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Text(text) => write!(f, "{text}"),
+        }
+    }
+}
+
+/// What the key says already, and the time.
+const NOT_VALUES: [&str; 4] = ["world", "strategy", "seed", "seconds"];
+
+/// All numbers of a summary by their names; those of a group as `group.name`.
+pub(crate) fn values(summary: &Summary) -> Result<IndexMap<String, Value>> {
+    let text = serde_json::to_string(summary)?;
+    let fields: IndexMap<String, serde_json::Value> = serde_json::from_str(&text)?;
+    let mut values = IndexMap::new();
+    for (name, field) in fields {
+        match field {
+            _ if NOT_VALUES.contains(&name.as_str()) => {}
+            serde_json::Value::Object(group) => {
+                let named = |(inner, value)| Some((format!("{name}.{inner}"), one(&value)?));
+                values.extend(group.into_iter().filter_map(named));
+            }
+            field => values.extend(one(&field).map(|value| (name, value))),
+        }
+    }
+    Ok(values)
+}
+
+fn one(field: &serde_json::Value) -> Option<Value> {
+    let text = || field.as_str().map(|text| Value::Text(text.to_owned()));
+    field.as_f64().map(Value::Number).or_else(text)
+}

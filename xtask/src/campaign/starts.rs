@@ -1,0 +1,53 @@
+//! Places to start from.
+
+use super::file::Starts;
+use anyhow::{Result, anyhow, bail};
+use covmap_explore::{ConfigError, drawn_starts};
+use covmap_world::World;
+use nalgebra::{Isometry2, Vector2};
+
+/// The most starts that are drawn.
+const MOST: usize = 1000;
+/// Starts are drawn among the centres of cells of this side \[m\], whatever the map's are.
+const SPACING: f64 = 0.1;
+/// So much room there is around a robot at a start that is drawn \[m\].
+const ROOM: f64 = 0.15;
+
+impl Starts {
+    /// The poses, `world_from_robot`; for a robot of `radius` \[m\], if they are drawn.
+    ///
+    /// Drawn are those that can be reached from the start that the world gives, or from its
+    /// roomiest place.
+    pub(crate) fn poses(&self, world: &World, radius: f64) -> Result<Vec<Isometry2<f64>>> {
+        match self {
+            Self::Given => Ok(vec![given(world, radius)?]),
+            Self::Poses(poses) if poses.is_empty() => bail!("starts: at least one is needed"),
+            Self::Poses(poses) => {
+                let pose = |&(x, y, angle): &(f64, f64, f64)| {
+                    Isometry2::new(Vector2::new(x, y), angle.to_radians())
+                };
+                Ok(poses.iter().map(pose).collect())
+            }
+            Self::Drawn { count, .. } if !(1..=MOST).contains(count) => {
+                bail!("starts: {count} cannot be drawn; the number must lie in 1..={MOST}")
+            }
+            Self::Drawn { count, seed } => {
+                let grid = world.grid(SPACING).map_err(ConfigError::from)?;
+                let home = given(world, radius)?;
+                let starts = drawn_starts(world, &grid, &home, (radius, ROOM), (*count, *seed));
+                starts.map_err(|there| {
+                    anyhow!("starts: {count} cannot be drawn: only {there} places have room")
+                })
+            }
+        }
+    }
+}
+
+fn given(world: &World, radius: f64) -> Result<Isometry2<f64>> {
+    if let Some(start) = world.given_start() {
+        return Ok(start);
+    }
+    let grid = world.grid(SPACING).map_err(ConfigError::from)?;
+    let start = world.default_start(&world.coverage(&grid), radius);
+    start.ok_or_else(|| anyhow!("a robot of radius {radius} m fits nowhere in this world"))
+}
