@@ -147,6 +147,24 @@ Examples:
   cargo xtask figure 7 --quick --out out/quick
 ";
 
+const PAPER_EXAMPLES: &str = "\
+The folder that is written:
+  report.html               all figures, tables and verdicts, in one file
+  claims.json               the verdicts with their figures and tests
+  figure*.svg, .png, .csv   the figures, and the numbers behind them
+  campaigns/                the runs; begun again, only what is missing is run
+
+A claim is `reproduced`, `not reproduced` or `undecided`. configs/paper.ron decides; configs/b21r.ron
+is a second column.
+
+Examples:
+  cargo xtask paper --out out/paper
+  cargo xtask paper --quick --out out/quick
+
+Exit codes: 0 done, whatever the verdicts; 2 bad input, or a result that cannot be written; 130
+interrupted with Ctrl-C.
+";
+
 const BENCH_EXAMPLES: &str = "\
 Each row is a ratio, measured on one core in one run, by the time that the core computes: how many
 times as long the other way takes to the same answers. Behind a ratio below its target stands
@@ -234,6 +252,11 @@ pub(crate) enum Command {
     /// Draws a figure of the paper from its own experiment.
     #[command(after_help = FIGURE_EXAMPLES)]
     Figure(Figure),
+    /// Makes a table of the paper from its own experiment.
+    Table(Table),
+    /// Runs all of the paper's experiments, draws all figures, and judges all claims.
+    #[command(after_help = PAPER_EXAMPLES)]
+    Paper(Experiments),
     /// Runs worlds × settings × strategies × starts × seeds, and goes on where it was stopped.
     #[command(after_help = CAMPAIGN_EXAMPLES)]
     Campaign(Campaign),
@@ -399,6 +422,15 @@ pub(crate) struct Bench {
 pub(crate) struct Figure {
     /// Which: 1, 2, 3, 5, 6 or 7
     #[arg(value_parser = ["1", "2", "3", "5", "6", "7"])]
+    pub(crate) number: String,
+    #[command(flatten)]
+    pub(crate) common: Experiments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Table {
+    /// Which: there is only 1
+    #[arg(value_parser = ["1"])]
     pub(crate) number: String,
     #[command(flatten)]
     pub(crate) common: Experiments,

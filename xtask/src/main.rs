@@ -25,6 +25,7 @@ mod map;
 mod map_pictures;
 mod mapper;
 mod model;
+mod paper;
 mod pictures;
 mod progress;
 mod recorded;
@@ -56,6 +57,8 @@ fn main() -> ExitCode {
         Command::Survey(arguments) => survey::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Figure(arguments) => figure::run(&arguments),
+        Command::Table(arguments) => figure::table(&arguments),
+        Command::Paper(arguments) => paper::run(&arguments),
         Command::Campaign(arguments) => campaign::command(&arguments),
         Command::Collect(arguments) => campaign::collect(&arguments),
     };
