@@ -165,6 +165,14 @@ Exit codes: 0 done, whatever the verdicts; 2 bad input, or a result that cannot 
 interrupted with Ctrl-C.
 ";
 
+const READINGS_EXAMPLES: &str = "\
+Examples:
+  cargo xtask survey LOG --out out/truth.ron
+  cargo xtask readings LOG --truth out/truth.ron --out out/readings
+  cargo xtask readings LOG --truth out/truth.ron --fit 300 --out out/fitted
+      also writes config.ron, whose sonars are the most like those of the log
+";
+
 const BENCH_EXAMPLES: &str = "\
 Each row is a ratio, measured on one core in one run, by the time that the core computes: how many
 times as long the other way takes to the same answers. Behind a ratio below its target stands
@@ -246,6 +254,9 @@ pub(crate) enum Command {
     /// Finds the walls of a building in the laser scans of a log: the truth to score maps with.
     #[command(after_help = SURVEY_EXAMPLES)]
     Survey(Survey),
+    /// Compares the readings of simulated sonars with those of a real robot, and fits them.
+    #[command(after_help = READINGS_EXAMPLES)]
+    Readings(Readings),
     /// Measures how fast decisions, updates and echoes are, as ratios.
     #[command(after_help = BENCH_EXAMPLES)]
     Bench(Bench),
@@ -412,6 +423,36 @@ pub(crate) struct Survey {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct Readings {
+    /// A CARMEN log, or a folder with od.txt, sonar.txt and laser.txt
+    pub(crate) log: PathBuf,
+    /// The survey of the place where the log was recorded, from `cargo xtask survey`
+    #[arg(long, value_name = "FILE.ron")]
+    pub(crate) truth: PathBuf,
+    /// Poses instead of the log's: lines `t_ms x_m y_m theta_rad` in the order of time
+    #[arg(long, value_name = "FILE")]
+    pub(crate) poses: Option<PathBuf>,
+    /// Robot and physics of the sonars [default: configs/sonar8.ron, built in]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) config: Option<PathBuf>,
+    /// Fit the physics by a local search of so many evaluations; 0 compares only
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) fit: usize,
+    /// A frame is used if the robot moved this far since the last one used, or turned
+    #[arg(long, value_name = "M", value_parser = every, default_value = "0.05")]
+    pub(crate) every: f64,
+    /// ... or turned by so many degrees
+    #[arg(long, value_name = "DEG", value_parser = every_degrees, default_value = "5")]
+    pub(crate) every_degrees: f64,
+    /// Where the results go
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct Bench {
     /// Smaller maps and samples: a look, not a measurement
     #[arg(long)]
@@ -461,6 +502,12 @@ pub(crate) struct Campaign {
     /// So many runs at the same time [default: one for each core]
     #[arg(long, value_name = "N")]
     pub(crate) jobs: Option<NonZeroUsize>,
+    /// Takes the world called NAME from another file than the campaign says
+    #[arg(long = "world", value_name = "NAME=FILE", value_parser = named_file)]
+    pub(crate) worlds: Vec<(String, PathBuf)>,
+    /// Only say how many runs there are, and whether all is well with them
+    #[arg(long)]
+    pub(crate) check: bool,
     /// Every N-th run only, from the I-th on
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     pub(crate) shard: Shard,
@@ -483,6 +530,11 @@ pub(crate) struct Collect {
     /// Print nothing but errors and notes
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+fn named_file(text: &str) -> Result<(String, PathBuf), String> {
+    let (name, file) = text.split_once('=').ok_or("it is NAME=FILE")?;
+    Ok((name.to_owned(), file.into()))
 }
 
 fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {

@@ -44,6 +44,12 @@ fn facts(moment: &Moment) -> Vec<String> {
     if decision.candidates != candidates.len() {
         facts.push(format!("{} of the candidates lie in the window", decision.candidates));
     }
+    if !decision.passage.is_empty() {
+        facts.push(format!(
+            "nothing is open in reach: it tries a passage of {} cells that look blocked",
+            decision.passage.len()
+        ));
+    }
     if decision.decided_by_oracle > 0 {
         facts.push(format!(
             "{} candidates were so close that the literal equations decided",

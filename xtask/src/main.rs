@@ -28,6 +28,7 @@ mod model;
 mod paper;
 mod pictures;
 mod progress;
+mod readings;
 mod recorded;
 mod replay;
 mod results;
@@ -55,6 +56,7 @@ fn main() -> ExitCode {
         Command::Fit(arguments) => fit::run(&arguments),
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Survey(arguments) => survey::run(&arguments),
+        Command::Readings(arguments) => readings::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Figure(arguments) => figure::run(&arguments),
         Command::Table(arguments) => figure::table(&arguments),

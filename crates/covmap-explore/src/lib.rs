@@ -27,31 +27,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod accuracy;
 mod config;
-mod corners;
 mod mission;
 mod overridden;
 mod robot;
 mod run;
 mod score;
-mod spread;
-mod starts;
+mod series;
 pub mod statistics;
 mod summary;
-mod tally;
 mod trace;
 
-pub use accuracy::Accuracy;
 pub use config::{Config, ConfigError, RobotParameters};
-pub use corners::corners;
 pub use mission::{Limits, Mission, MissionError};
 pub use overridden::OverrideError;
 pub use robot::{RecordedRobot, Robot, SimulatedRobot};
 pub use run::{Ending, Run, View, explore};
 pub use score::{Score, Truth};
-pub use spread::Spread;
-pub use starts::drawn_starts;
+pub use series::{Accuracy, Measurements, Spread, Tally, corners, drawn_starts};
 pub use summary::{CellCounts, Summary};
-pub use tally::{Measurements, Tally};
 pub use trace::{Event, TRACE_VERSION, TraceHasher, TraceHeader};

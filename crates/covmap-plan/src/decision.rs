@@ -29,6 +29,9 @@ pub struct Decision {
     /// The cells on the way there, without the one the robot is in, with the target; empty
     /// if the robot stays in its cell.
     pub path: Vec<Cell>,
+    /// The cells of the passage that the robot tries, though they look blocked: it can reach
+    /// no candidate but beyond them. Mostly none.
+    pub passage: Vec<Cell>,
     /// The number of candidates, |L(c)|.
     pub candidates: usize,
     /// How many of them have E\[I\] < 0, as far as gains were computed: not where an upper

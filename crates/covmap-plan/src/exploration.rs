@@ -115,6 +115,11 @@ impl Exploration {
         }
     }
 
+    /// Whether a cell lies outside of the environment's extent.
+    pub(crate) fn is_outside(&self, index: usize) -> bool {
+        self.outside[index]
+    }
+
     /// The distance up to which a cell is a reason to measure: 0 if it is finished, given up
     /// or outside.
     pub(crate) fn limit(&self, index: usize, known: bool, entropy: f64) -> f32 {

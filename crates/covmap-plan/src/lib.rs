@@ -20,12 +20,14 @@
 
 mod beam_cache;
 mod cells;
+mod certificate;
 mod decision;
 mod evaluate;
 mod exploration;
 mod gain;
 mod measured;
 mod parameters;
+mod passage;
 mod planner;
 mod range_likelihood;
 mod stencil;

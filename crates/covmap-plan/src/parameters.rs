@@ -75,6 +75,10 @@ pub struct PlannerParameters {
     pub uniform_share: f64,
     /// What is made of where the robot's body was.
     pub body_evidence: BodyEvidence,
+    /// When nothing is open in reach, but something is beyond a passage that looks blocked,
+    /// the robot tries it with its body, if it is no longer than this \[m\]; 0, the paper,
+    /// tries none.
+    pub passage_length: f64,
 }
 
 /// Why parameters make no planner.
@@ -118,6 +122,7 @@ impl PlannerParameters {
             unknown_reflection: 0.0,
             uniform_share: 0.0,
             body_evidence: BodyEvidence::Belief,
+            passage_length: 0.8,
         }
     }
 
@@ -139,6 +144,14 @@ impl PlannerParameters {
         within("max_counted_scans", f64::from(self.max_counted_scans), 1.0, 1e6)?;
         within("traversable_coverage", self.traversable_coverage, 0.0, 0.999)?;
         within("unknown_reflection", self.unknown_reflection, 0.0, 1.0)?;
-        within("uniform_share", self.uniform_share, 0.0, 1.0)
+        within("uniform_share", self.uniform_share, 0.0, 1.0)?;
+        within("passage_length", self.passage_length, 0.0, 100.0)
+    }
+
+    /// The longest passage that is tried, in cells.
+    pub(crate) fn longest_passage(&self, resolution: f64) -> usize {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1e6")]
+        let cells = (self.passage_length / resolution + 1e-9).min(1e6) as usize;
+        cells
     }
 }

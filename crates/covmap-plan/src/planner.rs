@@ -4,13 +4,14 @@ use crate::beam_cache::{BeamCache, Upto};
 use crate::cells::Cells;
 use crate::decision::{Score, best};
 use crate::evaluate::{Evaluation, REPORTED};
-use crate::exploration::{CountedScan, Exploration, InSight};
+use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
+use crate::passage::{large_regions, nearest_passage};
 use crate::traversable::Traversable;
 use crate::window::Window;
 use crate::{
-    BodyEvidence, CandidateRecord, CellStatus, Decision, PlannerError, PlannerParameters, Scope,
-    Stencil, Strategy, TravelCosts, expected_information_gain, travel_costs,
+    BodyEvidence, CandidateRecord, Decision, PlannerError, PlannerParameters, Scope, Stencil,
+    Strategy, TravelCosts, expected_information_gain, travel_costs,
 };
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
 use covmap_model::{SensorModel, cells_under_body, intercepted};
@@ -20,6 +21,10 @@ use nalgebra::Point2;
 /// The fast evaluation of E\[I\] is within this of the literal one, in units of the largest
 /// absolute gain of the decision; candidates closer to the best are decided by the latter.
 pub const GAIN_TOLERANCE: f64 = 1e-5;
+
+/// A passage is worth trying if beyond it the robot could stand on so many times the area of
+/// its body, about a square metre: pockets behind bumps are not.
+const ROOM: usize = 4;
 
 /// Chooses view-points by the strategies of section 4, and knows when all is explored.
 ///
@@ -36,12 +41,12 @@ pub struct Planner {
     parameters: PlannerParameters,
     model: SensorModel,
     stencil: Stencil,
-    grid: Grid,
+    pub(crate) grid: Grid,
     radius: f64,
     cells: Cells,
-    traversable: Traversable,
-    exploration: Exploration,
-    beams: BeamCache,
+    pub(crate) traversable: Traversable,
+    pub(crate) exploration: Exploration,
+    pub(crate) beams: BeamCache,
     measured: Measured,
     window: Option<Window>,
     /// The chosen view-point, and what was in sight of it when it was chosen.
@@ -49,9 +54,11 @@ pub struct Planner {
 }
 
 /// L(c): the candidates, with the way to each.
-struct Candidates {
-    indices: Vec<usize>,
-    costs: TravelCosts,
+pub(crate) struct Candidates {
+    pub(crate) indices: Vec<usize>,
+    pub(crate) costs: TravelCosts,
+    /// The cells that look blocked on the way to all of them.
+    passage: Vec<usize>,
 }
 
 impl Planner {
@@ -217,7 +224,7 @@ impl Planner {
     }
 
     /// Whether a cell is a reason to measure from so far away \[m\].
-    fn is_reason(&self, index: usize, distance: f32) -> bool {
+    pub(crate) fn is_reason(&self, index: usize, distance: f32) -> bool {
         self.cells.is_reason(self.cells.bordered(index), distance)
     }
 
@@ -235,7 +242,7 @@ impl Planner {
     /// L(c) and the ways there, for a robot in the cell `from`. Spent view-points are left
     /// out, unless the robot can reach none but those that one scan spends: it measures
     /// again until it can leave, or there is no reason left.
-    fn candidates(&mut self, from: Cell) -> Candidates {
+    pub(crate) fn candidates(&mut self, from: Cell) -> Candidates {
         let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
         let mut least = vec![f64::INFINITY; self.grid.len()];
         costs.reached().for_each(|index| least[index] = f64::NEG_INFINITY);
@@ -246,7 +253,38 @@ impl Planner {
                 && (trapped || !self.measured.is_spent(*i))
                 && self.beams.has_reason(*i)
         };
-        Candidates { indices: (0..self.grid.len()).filter(is_candidate).collect(), costs }
+        let indices = (0..self.grid.len()).filter(is_candidate).collect();
+        Candidates { indices, costs, passage: Vec::new() }
+    }
+
+    /// What L(c) would be beyond the nearest passage that looks blocked but was not tried,
+    /// for a robot that can reach no candidate; `None` if there is no such passage.
+    fn candidates_beyond_a_passage(&mut self, from: Cell) -> Option<Candidates> {
+        let longest = self.parameters.longest_passage(self.grid.resolution());
+        if longest == 0 {
+            return None;
+        }
+        let here = travel_costs(&self.grid, from, |index| self.traversable.at(index));
+        let cut_off = large_regions(&self.grid, ROOM * self.traversable.body_cells(), |i| {
+            self.traversable.at(i) && here.cost(i).is_none()
+        });
+        let least: Vec<f64> =
+            cut_off.iter().map(|c| if *c { f64::NEG_INFINITY } else { f64::INFINITY }).collect();
+        self.beams.refresh(&self.cells, &least, Upto::Sight);
+        let is_candidate =
+            |i: usize| cut_off[i] && !self.measured.is_spent(i) && self.beams.has_reason(i);
+        let passage = nearest_passage(
+            &self.grid,
+            longest,
+            |i| here.cost(i).map(|d| d / self.grid.resolution()),
+            |i| self.traversable.may_open(i) && !self.exploration.is_outside(i),
+            is_candidate,
+        )?;
+        let open = |i: usize| self.traversable.at(i) || passage.contains(&i);
+        let costs = travel_costs(&self.grid, from, open);
+        let is_reached = |i: &usize| is_candidate(*i) && costs.cost(*i).is_some();
+        let indices = (0..self.grid.len()).filter(is_reached).collect();
+        Some(Candidates { indices, costs, passage })
     }
 
     /// The candidates with their costs; gains and scores are not filled in.
@@ -280,7 +318,10 @@ impl Planner {
     /// Every candidate for a robot in the cell `from`, with gains and scores, in row-major
     /// order: what the next decision is made from. For IG_WIN those of the whole map.
     pub fn candidate_table(&mut self, from: Cell) -> Vec<CandidateRecord> {
-        let candidates = self.candidates(from);
+        let mut candidates = self.candidates(from);
+        if candidates.indices.is_empty() {
+            candidates = self.candidates_beyond_a_passage(from).unwrap_or(candidates);
+        }
         let mut records = self.records(&candidates);
         self.fill_gains(&mut records);
         self.score().apply(&mut records);
@@ -296,9 +337,11 @@ impl Planner {
     }
 
     /// Chooses the next view-point for a robot in the cell `from`; `None` if there is no
-    /// candidate: nothing is open.
+    /// candidate: nothing is open, and no passage is left to try.
     pub fn choose(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
-        let candidates = self.windowed_candidates(map, from)?;
+        let candidates = self
+            .windowed_candidates(map, from)
+            .or_else(|| self.candidates_beyond_a_passage(from))?;
         let with_gain = self.parameters.strategy.uses_gain();
         let mut records = self.records(&candidates);
         if with_gain {
@@ -310,9 +353,18 @@ impl Planner {
         let negative_gains = records.iter().filter(|r| r.gain < 0.0).count();
         let best = self.report(records);
         let path = candidates.costs.path_to(target)?;
+        let passage = candidates.passage.iter().map(|i| self.grid.cell(*i)).collect();
         let candidates = candidates.indices.len();
         self.target = Some((target, self.cells_in_sight(target)));
-        Some(Decision { target, path, candidates, negative_gains, decided_by_oracle, best })
+        Some(Decision {
+            target,
+            path,
+            passage,
+            candidates,
+            negative_gains,
+            decided_by_oracle,
+            best,
+        })
     }
 
     /// The five best candidates; where the strategy needs no gains they are computed for
@@ -415,72 +467,6 @@ impl Planner {
             self.is_reason(index, distance) && window.holds(index)
         };
         window.holds(candidate) && self.beams.sees(candidate, is_open)
-    }
-
-    /// What became of every cell, for a robot in the cell `from`: explored means that none
-    /// is [`CellStatus::Open`].
-    pub fn certificate(&mut self, map: &CoverageMap, from: Cell) -> Raster<CellStatus> {
-        let mut in_sight = vec![InSight::Nowhere; self.grid.len()];
-        let candidates = self.candidates(from);
-        for view_point in candidates.costs.reached() {
-            let is_candidate = candidates.indices.binary_search(&view_point).is_ok();
-            let sight = if is_candidate { InSight::Candidate } else { InSight::Spent };
-            for (index, distance) in self.beams.cells_in_sight(view_point) {
-                if self.is_reason(index, distance) {
-                    in_sight[index] = in_sight[index].max(sight);
-                }
-            }
-        }
-        Raster::from_fn(self.grid, |cell| {
-            let index = self.grid.index(cell).unwrap_or(0);
-            let (known, entropy) = (map.is_known(cell), map.entropy(cell));
-            self.exploration.status(index, known, entropy, in_sight[index])
-        })
-    }
-
-    /// The share of cells that are finished among those that are known or finished; cheap,
-    /// for progress.
-    pub fn share_finished(&self, map: &CoverageMap) -> f64 {
-        let status = |index: usize| {
-            let cell = self.grid.cell(index);
-            self.exploration.status(
-                index,
-                map.is_known(cell),
-                map.entropy(cell),
-                InSight::Candidate,
-            )
-        };
-        let count = |wanted: fn(CellStatus) -> bool| {
-            (0..self.grid.len())
-                .filter(|i| map.is_known(self.grid.cell(*i)) && wanted(status(*i)))
-                .count()
-        };
-        let (finished, open) = (
-            count(|s| matches!(s, CellStatus::Resolved | CellStatus::Exhausted)),
-            count(|s| s == CellStatus::Open),
-        );
-        #[allow(clippy::cast_precision_loss, reason = "a share of at most 2e7 cells")]
-        let share = finished as f64 / (finished + open).max(1) as f64;
-        share
-    }
-
-    /// How many cells were given up by the cap on counted scans.
-    pub fn capped_cells(&self) -> usize {
-        self.exploration.capped_cells()
-    }
-
-    /// How many scans were counted for each cell.
-    pub fn counted_scans(&self) -> Raster<u32> {
-        self.exploration.counted_scans(self.grid)
-    }
-
-    /// Whether the robot can reach any view-point but the cell that it is in.
-    pub fn can_move(&self, from: Cell) -> bool {
-        let near = |(dx, dy)| self.grid.index(from.offset(dx, dy));
-        [(1, 0), (-1, 0), (0, 1), (0, -1)]
-            .into_iter()
-            .filter_map(near)
-            .any(|i| self.traversable.at(i))
     }
 
     /// The cells around a view-point, as the planner's beams see them.

@@ -53,6 +53,16 @@ impl Traversable {
         !self.bumped[index] && (self.stood[index] || open && self.blockers[index] == 0)
     }
 
+    /// How many cells' centres are under the body.
+    pub(crate) fn body_cells(&self) -> usize {
+        self.disc.len()
+    }
+
+    /// Whether a view-point that looks blocked may turn out to be open: nobody bumped there.
+    pub(crate) fn may_open(&self, index: usize) -> bool {
+        !self.bumped[index]
+    }
+
     /// Takes over what is known of a cell: `Some(true)` if the robot may drive over it,
     /// `Some(false)` if it blocks. Calls `changed` for every view-point that this opens or
     /// closes.

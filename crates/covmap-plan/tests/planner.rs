@@ -137,7 +137,7 @@ proptest! {
         let certificate = s.planner.certificate(&s.map, home);
         let open = certificate.values().iter().filter(|c| **c == CellStatus::Open).count();
         let decision = s.planner.choose(&s.map, home);
-        prop_assert_eq!(open > 0, decision.is_some());
+        prop_assert_eq!(open > 0, decision.as_ref().is_some_and(|d| d.passage.is_empty()));
         prop_assert_eq!(table.is_empty(), decision.is_none());
         if let Some(decision) = decision {
             let chosen = table.iter().find(|r| r.cell == decision.target).unwrap();
@@ -182,5 +182,50 @@ fn a_wall_hides_what_is_behind_it() {
     for (index, _) in s.planner.cells_in_sight(home) {
         let distance = (s.map.grid().center(s.map.grid().cell(index)) - center).norm();
         assert!(distance < 1.0 + 0.25 + 0.1, "{distance}");
+    }
+}
+
+/// A robot that measured all that it can from the left of a strip of unknown cells .6 m wide,
+/// and knows a free room to the right of it.
+fn cut_off(passage_length: f64) -> (Setting, Cell) {
+    let mut s = setting(Strategy::Cl, 11, |p| {
+        (p.passage_length, p.scan_spacing) = (passage_length, 0.7);
+    });
+    let mut sweep = |x: f64, to: f64, y: f64| {
+        let (from, to) = (Point2::new(x, y), Point2::new(to, y));
+        let changes = integrate_body(&mut s.map, from, to, RADIUS);
+        s.planner.body_moved(&s.map, from, to, &changes);
+    };
+    (-8..=8).for_each(|y| sweep(-1.25, -1.15, 0.1 * f64::from(y)));
+    (-8..=8).for_each(|y| sweep(0.05, 1.3, 0.1 * f64::from(y)));
+    [-0.6, 0.0, 0.6].into_iter().for_each(|y| s.scan(-1.2, y, &[Range::Missing; 24]));
+    let home = s.map.grid().cell_at(Point2::new(-1.2, 0.0)).unwrap();
+    (s, home)
+}
+
+#[test]
+fn a_passage_that_looks_blocked_is_tried_when_nothing_else_is_left() {
+    let (mut s, home) = cut_off(0.8);
+    let open = |s: &mut Setting| {
+        let certificate = s.planner.certificate(&s.map, home);
+        certificate.values().contains(&CellStatus::Open)
+    };
+    assert!(!open(&mut s));
+    let mut tries = 0;
+    while let Some(decision) = s.planner.choose(&s.map, home) {
+        assert!(!decision.passage.is_empty() && decision.passage.len() <= 8);
+        assert!(decision.passage.iter().all(|cell| decision.path.contains(cell)));
+        assert!(s.map.grid().center(decision.target).x > -0.3);
+        s.planner.bump_at(decision.passage[0]);
+        tries += 1;
+    }
+    assert!((2..=120).contains(&tries), "{tries}");
+}
+
+#[test]
+fn a_passage_that_is_too_long_is_not_tried() {
+    for length in [0.0, 0.3] {
+        let (mut s, home) = cut_off(length);
+        assert!(s.planner.choose(&s.map, home).is_none());
     }
 }

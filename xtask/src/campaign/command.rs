@@ -1,6 +1,7 @@
 //! `campaign`: runs what its file says.
 
 use super::file::Campaign;
+use super::plan::Plan;
 use super::pool::{Options, Step, run as run_all};
 use crate::arguments::Campaign as Arguments;
 use crate::interrupt::{self, Interrupt};
@@ -13,7 +14,16 @@ use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
-    let campaign = Campaign::read(&arguments.file)?;
+    let mut campaign = Campaign::read(&arguments.file)?;
+    for (name, file) in &arguments.worlds {
+        campaign.replace_world(name, file)?;
+    }
+    if arguments.check {
+        let plan = Plan::new(&campaign)?;
+        plan.left_out().for_each(say::note);
+        say::line(format!("{}: {} runs", campaign.name, plan.jobs.len()));
+        return Ok(ExitCode::SUCCESS);
+    }
     let out = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.file));
     let all = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     let jobs = arguments.jobs.unwrap_or(all);
@@ -27,6 +37,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     bar.finish();
     let records = records?;
     if interrupt.is_pressed() {
+        let (done, name) = (records.len(), &campaign.name);
+        say::note(format!(
+            "interrupted; {done} runs of {name} are recorded, and begun again it goes on"
+        ));
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     }
     if !arguments.quiet {

@@ -1,7 +1,7 @@
 //! The file that says what is run.
 
 use crate::fit_file::beside;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use covmap_io::read_ron;
 use covmap_plan::Strategy;
 use serde::Deserialize;
@@ -118,5 +118,17 @@ impl Campaign {
             setting.config = beside(path, &setting.config);
         }
         Ok(campaign)
+    }
+
+    /// Takes a world from another file, which must be there.
+    pub(crate) fn replace_world(&mut self, name: &str, file: &Path) -> Result<()> {
+        match self.worlds.iter_mut().find(|world| world.name == name) {
+            Some(world) => {
+                world.file = file.to_owned();
+                world.optional = false;
+                Ok(())
+            }
+            None => bail!("--world: the campaign has no world called {name:?}"),
+        }
     }
 }

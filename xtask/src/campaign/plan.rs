@@ -83,7 +83,7 @@ pub(crate) struct Plan {
     pub(crate) jobs: Vec<Job>,
     pub(crate) keep_paths: bool,
     /// The worlds that are left out because their files are not there.
-    pub(crate) left_out: Vec<PathBuf>,
+    left_out: Vec<PathBuf>,
 }
 
 impl Plan {
@@ -109,7 +109,15 @@ impl Plan {
             bail!("no world of the campaign is there, so there is nothing to run");
         }
         let manifest = manifest(campaign, &jobs)?;
+        for (job, planned) in jobs.iter_mut().zip(&manifest.runs) {
+            job.planned = planned.clone();
+        }
         Ok(Self { manifest, cases, jobs, keep_paths: campaign.keep_paths, left_out })
+    }
+
+    /// What there is to say of worlds that are left out.
+    pub(crate) fn left_out(&self) -> impl Iterator<Item = String> + '_ {
+        self.left_out.iter().map(|f| format!("{}: is not there, and is left out", f.display()))
     }
 
     /// The mission of a run.
@@ -230,7 +238,7 @@ impl Source {
             }
         };
         let starts = named.starts.as_ref().unwrap_or(&campaign.starts);
-        let starts = starts.poses(&world, config.robot.radius).map_err(about(file))?;
+        let starts = starts.poses(&world, &config).map_err(about(file))?;
         let Setting { while_driving, max_scans, .. } = *setting;
         let limits = Limits { while_driving, max_scans };
         let (file, name) = (file.clone(), name.clone());

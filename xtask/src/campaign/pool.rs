@@ -51,13 +51,12 @@ pub(crate) fn run(
 ) -> Result<Vec<RunRecord>> {
     let plan = Plan::new(campaign)?;
     let folder = Folder::open(options.out, &plan.manifest)?;
-    for file in &plan.left_out {
-        tell(&Step::Note(format!("{}: is not there, and is left out", file.display())));
-    }
+    plan.left_out().for_each(|note| tell(&Step::Note(note)));
     let strangers = folder.strangers(&plan.manifest)?;
     if strangers > 0 {
+        let files = if strangers == 1 { "file is" } else { "files are" };
         tell(&Step::Note(format!(
-            "{}: {strangers} files are of another version of covmap, and are not used",
+            "{}: {strangers} {files} of another version of covmap, and not used",
             options.out.display()
         )));
     }

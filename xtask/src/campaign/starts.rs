@@ -2,7 +2,7 @@
 
 use super::file::Starts;
 use anyhow::{Result, anyhow, bail};
-use covmap_explore::{ConfigError, drawn_starts};
+use covmap_explore::{Config, ConfigError, drawn_starts};
 use covmap_world::World;
 use nalgebra::{Isometry2, Vector2};
 
@@ -14,13 +14,14 @@ const SPACING: f64 = 0.1;
 const ROOM: f64 = 0.15;
 
 impl Starts {
-    /// The poses, `world_from_robot`; for a robot of `radius` \[m\], if they are drawn.
+    /// The poses, `world_from_robot`.
     ///
     /// Drawn are those that can be reached from the start that the world gives, or from its
     /// roomiest place.
-    pub(crate) fn poses(&self, world: &World, radius: f64) -> Result<Vec<Isometry2<f64>>> {
+    pub(crate) fn poses(&self, world: &World, config: &Config) -> Result<Vec<Isometry2<f64>>> {
+        let radius = config.robot.radius;
         match self {
-            Self::Given => Ok(vec![given(world, radius)?]),
+            Self::Given => Ok(vec![given(world, radius, config.resolution)?]),
             Self::Poses(poses) if poses.is_empty() => bail!("starts: at least one is needed"),
             Self::Poses(poses) => {
                 let pose = |&(x, y, angle): &(f64, f64, f64)| {
@@ -33,7 +34,7 @@ impl Starts {
             }
             Self::Drawn { count, seed } => {
                 let grid = world.grid(SPACING).map_err(ConfigError::from)?;
-                let home = given(world, radius)?;
+                let home = given(world, radius, SPACING)?;
                 let starts = drawn_starts(world, &grid, &home, (radius, ROOM), (*count, *seed));
                 starts.map_err(|there| {
                     anyhow!("starts: {count} cannot be drawn: only {there} places have room")
@@ -43,11 +44,12 @@ impl Starts {
     }
 }
 
-fn given(world: &World, radius: f64) -> Result<Isometry2<f64>> {
+/// The world's own start, or the one that `explore` takes on cells of a side \[m\].
+fn given(world: &World, radius: f64, resolution: f64) -> Result<Isometry2<f64>> {
     if let Some(start) = world.given_start() {
         return Ok(start);
     }
-    let grid = world.grid(SPACING).map_err(ConfigError::from)?;
+    let grid = world.grid(resolution).map_err(ConfigError::from)?;
     let start = world.default_start(&world.coverage(&grid), radius);
     start.ok_or_else(|| anyhow!("a robot of radius {radius} m fits nowhere in this world"))
 }

@@ -2,7 +2,7 @@
 
 use super::runs::Runs;
 use super::session::{Series, Session};
-use crate::campaign::{Campaign, Seeds, Setting, Starts};
+use crate::campaign::{Campaign, Setting, Starts};
 use anyhow::Result;
 use covmap_plan::Strategy;
 use std::path::Path;
@@ -10,31 +10,17 @@ use std::path::Path;
 /// n* is not looked for beyond four times the paper's 130.
 const MOST_COUNTS: f64 = 520.0;
 
+/// A quick run of an ablation ends after so many scans.
+const QUICK_SCANS: usize = 300;
+
 /// The two configurations: the first decides the verdicts.
 pub(crate) const PAPER: &str = "paper";
 pub(crate) const B21R: &str = "b21r";
 
-/// The campaign of a figure, from its file.
+/// The campaign of a figure, or its quick variant, from its file.
 pub(crate) fn campaign(name: &str, quick: bool) -> Result<Campaign> {
-    let file = format!("configs/{name}.ron");
-    let campaign = Campaign::read(Path::new(&file))?;
-    Ok(if quick { quickened(campaign) } else { campaign })
-}
-
-/// Cells of .2 m, three starts, one seed: a look, not a result.
-fn quickened(mut campaign: Campaign) -> Campaign {
-    let fewer = |starts: &mut Starts| match starts {
-        Starts::Drawn { count, .. } => *count = (*count).min(3),
-        Starts::Poses(poses) => poses.truncate(3),
-        Starts::Given => {}
-    };
-    campaign.seeds = Seeds { count: 1, ..campaign.seeds };
-    fewer(&mut campaign.starts);
-    for world in &mut campaign.worlds {
-        world.resolution = Some(0.2);
-        world.starts.iter_mut().for_each(fewer);
-    }
-    campaign
+    let variant = if quick { "-quick" } else { "" };
+    Campaign::read(Path::new(&format!("configs/{name}{variant}.ron")))
 }
 
 impl Series {
@@ -78,11 +64,12 @@ pub(crate) fn n_star(session: &Session<'_>, table_1: &Series) -> Result<Series> 
 
 /// What changes when one of our readings does, in a small world.
 pub(crate) fn ablation(session: &Session<'_>) -> Result<Series> {
-    let text = include_str!("ablation.ron");
-    let mut campaign: Campaign = covmap_io::parse_ron(Path::new("ablation.ron"), text)?;
+    let mut campaign = campaign("ablation", false)?;
     if session.quick {
-        campaign.settings.iter_mut().for_each(|setting| setting.max_scans = Some(400));
-        campaign = quickened(campaign);
+        campaign.name.push_str("-quick");
+        campaign.starts = Starts::Given;
+        campaign.worlds.iter_mut().for_each(|world| world.resolution = Some(0.2));
+        campaign.settings.iter_mut().for_each(|setting| setting.max_scans = Some(QUICK_SCANS));
     }
     session.run(campaign)
 }

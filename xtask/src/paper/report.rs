@@ -206,7 +206,8 @@ impl Report {
 
 /// A claim with both configurations; `claims::all` gives both in the same order.
 fn line<'a>(first: &'a Judged, second: &'a Judged) -> Line<'a> {
-    let test = |judged: &'a Judged| Test { rule: RULE, p: judged.p, trials: &judged.finding.trials };
+    let test =
+        |judged: &'a Judged| Test { rule: RULE, p: judged.p, trials: &judged.finding.trials };
     Line {
         claim: first.finding.claim,
         statement: first.finding.statement,

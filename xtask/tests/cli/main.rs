@@ -4,10 +4,12 @@
 mod bad_input;
 mod bad_maps;
 mod bench;
+mod campaign;
 mod explain;
 mod explore;
 mod fit;
 mod interrupt;
 mod map;
+mod readings;
 mod tables;
 mod typed;

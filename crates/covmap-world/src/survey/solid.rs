@@ -5,7 +5,7 @@ use super::{Post, Side, Survey, WallSegment};
 use crate::coverage::Solids;
 use crate::error::WorldError;
 use crate::outline::{Outline, outlines};
-use crate::scenario::{Obstacle, Shape, Surface};
+use crate::scenario::{Extent, Obstacle, Scenario, Shape, Surface};
 use covmap::{Grid, Raster};
 use nalgebra::{Point2, Vector2};
 
@@ -40,13 +40,32 @@ impl Survey {
     /// The outlines of walls, posts and the others, in this order; then what is solid behind
     /// the corners of rooms, between the walls that meet there.
     pub(super) fn outlines(&self) -> Result<Vec<Outline>, WorldError> {
+        let mut all = outlines(&obstacles(self.shapes()))?;
+        all.extend(outlines(&obstacles(corners(&self.walls).into_iter()))?);
+        Ok(all)
+    }
+
+    fn shapes(&self) -> impl Iterator<Item = Shape> {
         let walls = self.walls.iter().map(WallSegment::shape);
         let posts = self.posts.iter();
         let posts = posts.map(|&Post { center, radius }| Shape::Circle { center, radius });
-        let shapes = walls.chain(posts).chain(self.solids.iter().cloned());
-        let mut all = outlines(&obstacles(shapes))?;
-        all.extend(outlines(&obstacles(corners(&self.walls).into_iter()))?);
-        Ok(all)
+        walls.chain(posts).chain(self.solids.iter().cloned())
+    }
+
+    /// The world of the surveyed solids, with rough surfaces, and so much free space around
+    /// them \[m\]; and where its lower left corner lies in the survey.
+    ///
+    /// # Errors
+    /// As [`Survey::coverage`].
+    pub fn scenario(&self, name: &str, margin: f64) -> Result<(Scenario, Point2<f64>), WorldError> {
+        let [low, high] = self.bounds()?.unwrap_or_default();
+        let corner = low - Vector2::repeat(margin);
+        let size = high - corner + Vector2::repeat(margin);
+        let shapes = self.shapes().chain(corners(&self.walls));
+        let moved = shapes.map(|shape| shape.moved(0.0, &|(x, y)| (x - corner.x, y - corner.y)));
+        let extent = Extent { width: size.x, height: size.y };
+        let obstacles = obstacles(moved);
+        Ok((Scenario { name: name.to_owned(), extent, start: None, obstacles }, corner))
     }
 
     /// The exact coverage of every cell of a grid: the share of its area that lies in a solid,

@@ -1,0 +1,219 @@
+//! `readings`: are the simulated sonars like those of a real robot?
+
+mod knobs;
+mod table;
+
+use crate::arguments::Readings as Arguments;
+use crate::input::{self, about};
+use crate::interrupt::{self, Interrupt};
+use crate::mapper::Stride;
+use crate::progress::Progress;
+use crate::recorded::frames;
+use crate::{csv_file, say};
+use anyhow::{Result, bail};
+use covmap_explore::Config;
+use covmap_fit::{SearchSettings, maximise};
+use covmap_io::log::Sensor;
+use covmap_io::{OutputFolder, read_ron, write_ron};
+use covmap_sonar::{Range, Scan, SonarRing};
+use covmap_world::survey::Survey;
+use covmap_world::{Surface, World, stream};
+use knobs::{KNOBS, Knob};
+use nalgebra::{Isometry2, Point2, Translation2};
+use std::io::Write;
+use std::process::ExitCode;
+use table::Table;
+
+/// Free space around the walls of a survey \[m\].
+const MARGIN: f64 = 1.0;
+/// What there is by the laser is the nearest of its echoes within this of a sonar's axis \[rad\]:
+/// 7.5°, whatever the cone of the simulated sonars.
+const CONE: f64 = 7.5 * std::f64::consts::PI / 180.0;
+/// The noise of so many seeds makes the shares of the simulated readings.
+const SEEDS: u64 = 4;
+
+/// A reading of a real sonar, and what there is by the laser.
+struct Reading {
+    sensor: usize,
+    /// The nearest of the laser's echoes around the sensor's axis \[m\].
+    truth: f64,
+    range: Range,
+}
+
+/// All readings of one scan.
+struct Frame {
+    /// In the world of the survey.
+    pose: Isometry2<f64>,
+    readings: Vec<Reading>,
+}
+
+/// A log beside the world that its laser saw.
+struct Recording {
+    world: World,
+    frames: Vec<Frame>,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
+    let interrupt = Interrupt::listen()?;
+    let (config, name) = input::folder_config(arguments.config.as_deref())?;
+    input::check(&config, &name)?;
+    let recording = Recording::read(arguments, &config)?;
+    let folder = OutputFolder::create(arguments.out.clone())?;
+    let real = recording.real();
+    let mut rows = vec![("real", real.clone()), ("simulated", recording.simulated(&config)?)];
+    if arguments.fit > 0 {
+        let fitted = fit(arguments, &config, &recording, &real, &interrupt)?;
+        let simulated = recording.simulated(&fitted)?;
+        let (before, after) =
+            (real.log_likelihood_under(&rows[1].1), real.log_likelihood_under(&simulated));
+        let comment = format!(
+            "Physics fitted to the readings of {}, by `cargo xtask readings`.\n\
+             Mean log-likelihood of the kind of a reading [nats]: {before:.3} → {after:.3}, of {} readings",
+            arguments.log.file_name().unwrap_or_default().to_string_lossy(),
+            real.count()
+        );
+        write_ron(folder.path("config.ron"), &fitted, Some(&comment))?;
+        rows.push(("fitted", simulated));
+    }
+    csv_file::write(&folder.path("readings.csv"), |out| {
+        writeln!(out, "source,{}", Table::HEADING)?;
+        rows.iter().try_for_each(|(name, table)| {
+            table.lines(",").iter().try_for_each(|line| writeln!(out, "{name},{line}"))
+        })
+    })?;
+    let charts = table::figure(&rows);
+    charts.save(folder.path("readings.svg"), folder.path("readings.png"))?;
+    let written = folder.finish()?;
+    if !arguments.quiet {
+        tell(&rows);
+        say::line(format!("  {}", written.display()));
+    }
+    Ok(if interrupt.is_pressed() { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
+}
+
+fn tell(rows: &[(&str, Table)]) {
+    let real = &rows[0].1;
+    for (name, table) in rows {
+        let likelihood = real.log_likelihood_under(table);
+        say::line(format!("{name} ({likelihood:.3} nats a reading)"));
+        say::line(format!("  {}", Table::HEADING.replace(',', "  ")));
+        table.lines("  ").iter().for_each(|line| say::line(format!("  {line}")));
+    }
+}
+
+/// The physics under which the kinds of the real readings are most likely.
+fn fit(
+    arguments: &Arguments,
+    config: &Config,
+    recording: &Recording,
+    real: &Table,
+    interrupt: &Interrupt,
+) -> Result<Config> {
+    let mut progress = Progress::new(arguments.quiet);
+    let knobs: Vec<&Knob> = KNOBS.iter().collect();
+    let turned = |place: &[f64]| {
+        let mut config = config.clone();
+        knobs.iter().zip(place).for_each(|(knob, at)| knob.set(&mut config, *at));
+        config
+    };
+    let start: Vec<f64> = knobs.iter().map(|knob| knob.place(config)).collect();
+    let settings = SearchSettings { evaluations: arguments.fit, ..SearchSettings::default() };
+    let value =
+        |place: &[f64]| Some(real.log_likelihood_under(&recording.simulated(&turned(place)).ok()?));
+    let mut done = 0;
+    let found = maximise(&start, &settings, value, |step| {
+        done += 1;
+        let value = step.value.unwrap_or(f64::NEG_INFINITY);
+        progress.tell(|| format!("{done} evaluations · {value:.4} nats"));
+        interrupt.flow()
+    });
+    progress.finish();
+    let Some((place, _)) = found else { bail!("the physics of the configuration is not possible") };
+    Ok(turned(&place))
+}
+
+impl Recording {
+    fn read(arguments: &Arguments, config: &Config) -> Result<Self> {
+        let Arguments { log, poses, truth, .. } = arguments;
+        let survey: Survey = read_ron(truth)?;
+        if survey.bounds().map_err(about(truth))?.is_none() {
+            bail!("{}: holds no wall, post or solid", truth.display());
+        }
+        let (scenario, corner) = survey.scenario("survey", MARGIN).map_err(about(truth))?;
+        let world = World::from_scenario(&scenario, Surface::Rough).map_err(about(truth))?;
+        let (ring, _) = config.build()?;
+        let sonar = frames(log, poses.as_deref(), Sensor::Sonar, ring.clone())?;
+        let laser = frames(log, poses.as_deref(), Sensor::Laser, ring)?;
+        let stride = Stride { every: arguments.every, turn: arguments.every_degrees.to_radians() };
+        let mut lasers = laser.scans.iter().peekable();
+        let (mut last, mut found) = (None, Vec::new());
+        for (ring, scan) in &sonar.scans {
+            while lasers.next_if(|(_, l)| l.time < scan.time - 1e-6).is_some() {}
+            let Some((laser_ring, laser)) = lasers.next_if(|(_, l)| l.time < scan.time + 1e-6)
+            else {
+                continue;
+            };
+            if !stride.takes(last.as_ref(), &scan.pose) {
+                continue;
+            }
+            last = Some(scan.pose);
+            let pose = Translation2::from(-corner.coords) * scan.pose;
+            let echoes = echoes(laser_ring, laser);
+            let readings = readings(ring, scan, &echoes).collect();
+            if !world.is_solid(pose.translation.vector.into()) {
+                found.push(Frame { pose, readings });
+            }
+        }
+        if found.is_empty() {
+            bail!("{}: no frame has both sonar and laser in the surveyed world", log.display());
+        }
+        Ok(Self { world, frames: found })
+    }
+
+    fn real(&self) -> Table {
+        let readings = self.frames.iter().flat_map(|frame| &frame.readings);
+        readings.map(|reading| (reading.truth, reading.range)).collect()
+    }
+
+    fn simulated(&self, config: &Config) -> Result<Table> {
+        let (ring, _) = config.build()?;
+        config.sonar.validate()?;
+        let mut all = Vec::new();
+        for seed in 0..SEEDS {
+            for (counter, frame) in (0..).zip(&self.frames) {
+                let mut random = stream(seed, "readings", counter);
+                let ranges = self.world.fire(&ring, &frame.pose, &config.sonar, &mut random);
+                let readings = frame.readings.iter();
+                all.extend(readings.filter_map(|r| Some((r.truth, *ranges.get(r.sensor)?))));
+            }
+        }
+        Ok(all.into_iter().collect())
+    }
+}
+
+/// Where the laser's echoes come from, for the robot \[m\].
+fn echoes(ring: &SonarRing, scan: &Scan) -> Vec<Point2<f64>> {
+    let beams = ring.beams().iter().zip(&scan.ranges);
+    let place = |(beam, range): (&covmap_sonar::Beam, &Range)| match *range {
+        Range::Echo(range) => Some(beam.pose * Point2::new(range, 0.0)),
+        Range::NoEcho | Range::Missing => None,
+    };
+    beams.filter_map(place).collect()
+}
+
+/// The readings of the sonars around whose axes the laser has echoes.
+fn readings<'a>(
+    ring: &'a SonarRing,
+    scan: &'a Scan,
+    echoes: &'a [Point2<f64>],
+) -> impl Iterator<Item = Reading> + 'a {
+    let sensors = ring.beams().iter().zip(&scan.ranges).enumerate();
+    sensors.filter_map(|(sensor, (beam, range))| {
+        let in_cone = echoes.iter().filter_map(|echo| {
+            let seen = beam.pose.inverse_transform_point(echo);
+            (seen.y.atan2(seen.x).abs() <= CONE).then(|| seen.coords.norm())
+        });
+        let truth = in_cone.min_by(f64::total_cmp)?;
+        (*range != Range::Missing).then_some(Reading { sensor, truth, range: *range })
+    })
+}

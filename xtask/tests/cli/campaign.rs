@@ -1,0 +1,294 @@
+//! `campaign` and `collect`: the same bytes, whatever happens on the way.
+
+use crate::typed::{Shell, shipped};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Twelve runs of a few milliseconds each.
+fn tiny() -> Shell {
+    let shell = Shell::new();
+    shell.write("room.ron", "(name: \"room\", extent: (width: 3.0, height: 2.4), obstacles: [])");
+    shell.write("tiny.ron", campaign(&[]));
+    shell
+}
+
+/// The tiny campaign, with parts of it replaced.
+fn campaign(replaced: &[(&str, &str)]) -> String {
+    let good = format!(
+        "(
+    name: \"tiny\",
+    worlds: [(name: \"room\", file: \"room.ron\", resolution: 0.2, turn: 7.0, shift: (0.05, 0.0))],
+    settings: [(name: \"b21r\", config: {:?}, max_scans: 12)],
+    strategies: [Cl, IgCl(alpha: 0.3), Count(times: 3.0, half_distance: 2.0)],
+    starts: Drawn(count: 2, seed: 1),
+    seeds: (first: 5, count: 2),
+    metrics: [\"scans\", \"path_length_m\", \"cells.resolved\"],
+    keep_paths: true,
+)",
+        shipped("configs/b21r.ron")
+    );
+    replaced.iter().fold(good, |text, (part, instead)| {
+        assert!(text.contains(part), "{part}");
+        text.replace(part, instead)
+    })
+}
+
+/// All that is a function of the campaign: the tables without the times, and the list.
+fn bytes(shell: &Shell, dir: &str) -> Vec<Vec<u8>> {
+    let files = ["runs.csv", "summary.csv", "campaign.json"];
+    files.map(|name| fs::read(shell.path(dir).join(name)).unwrap()).to_vec()
+}
+
+fn run_files(shell: &Shell, dir: &str) -> Vec<PathBuf> {
+    let entries = fs::read_dir(shell.path(dir).join("runs")).unwrap();
+    let mut files: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+/// The lines of a run's file that no clock has a part in.
+fn timeless(file: &Path) -> [String; 2] {
+    let text = fs::read_to_string(file).unwrap();
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(lines.len(), 3);
+    [lines[0], lines[2]].map(str::to_owned)
+}
+
+#[test]
+fn one_job_two_jobs_and_merged_shards_write_the_same_bytes() {
+    let shell = tiny();
+    let typed = shell.expect("campaign tiny.ron --jobs 1", 0);
+    assert_eq!((typed.out.as_str(), typed.err.as_str()), ("out/tiny: 12 runs of tiny\n", ""));
+    let expected = bytes(&shell, "out/tiny");
+    shell.expect("campaign tiny.ron --jobs 2 --out two", 0);
+    assert_eq!(bytes(&shell, "two"), expected);
+    for (shard, count) in [(1, 3), (2, 3), (3, 2), (4, 2), (5, 2)] {
+        let typed = shell.expect(&format!("campaign tiny.ron --shard {shard}/5 --out s{shard}"), 0);
+        assert_eq!(typed.out, format!("s{shard}: {count} runs of tiny\n"));
+    }
+    let typed = shell.expect("collect s3 s1 s2 --out merged", 0);
+    assert_eq!(typed.out, "merged: 8 of 12 runs of tiny\n");
+    shell.expect("collect merged s5 s4 s5", 0);
+    assert_eq!(bytes(&shell, "merged"), expected);
+    let files = |dir: &str| run_files(&shell, dir).iter().map(|f| timeless(f)).collect::<Vec<_>>();
+    assert_eq!(files("merged"), files("out/tiny"));
+    assert_eq!(files("two"), files("out/tiny"));
+}
+
+#[test]
+fn a_line_holds_what_the_summary_of_the_same_run_does() {
+    let shell = tiny();
+    let given = [("Drawn(count: 2, seed: 1)", "Given"), ("turn: 7.0, shift: (0.05, 0.0)", "")];
+    shell.write("tiny.ron", campaign(&given));
+    shell.expect("campaign tiny.ron --quiet", 0);
+    let table = fs::read_to_string(shell.path("out/tiny/runs.csv")).unwrap();
+    let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
+    let columns = lines.next().unwrap();
+    let run = lines.find(|run| run[2] == "IG_CL(.3)" && run[4] == "6").unwrap();
+    let line = "explore room.ron --resolution 0.2 --seed 6 --max-scans 12 --out one --quiet";
+    shell.expect(line, 3);
+    let summary = shell.json("one/summary.json");
+    for (name, value) in summary.as_object().unwrap() {
+        if ["world", "strategy", "seed", "seconds", "cells"].contains(&name.as_str()) {
+            continue;
+        }
+        let column = columns.iter().position(|column| column == name);
+        let told = run[column.unwrap_or_else(|| panic!("no column {name}"))];
+        match value.as_f64() {
+            Some(number) => assert_eq!(told.parse(), Ok(number), "{name}"),
+            None => assert_eq!(Some(told), value.as_str(), "{name}"),
+        }
+    }
+    let resolved = columns.iter().position(|column| *column == "cells.resolved").unwrap();
+    assert_eq!(summary["cells"]["resolved"].to_string(), run[resolved]);
+}
+
+#[test]
+fn a_campaign_that_is_killed_at_any_moment_ends_with_the_same_bytes() {
+    let shell = tiny();
+    shell.expect("campaign tiny.ron --out whole", 0);
+    let mut random = 12345_u64;
+    for _ in 0..20 {
+        let mut child = shell.command("campaign tiny.ron --jobs 2 --out killed").spawn().unwrap();
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        // The whole campaign takes about as long as the longest delay.
+        std::thread::sleep(Duration::from_micros((random >> 32) % 60_000));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        // So that every kill finds something left to do.
+        if let Some(file) = killed_files(&shell).first() {
+            fs::remove_file(file).unwrap();
+        }
+    }
+    let typed = shell.expect("campaign tiny.ron --jobs 2 --out killed", 0);
+    assert_eq!(typed.err, "", "nothing is damaged");
+    assert_eq!(bytes(&shell, "killed"), bytes(&shell, "whole"));
+    let files = |dir: &str| run_files(&shell, dir).iter().map(|f| timeless(f)).collect::<Vec<_>>();
+    assert_eq!(files("killed"), files("whole"));
+}
+
+/// The files of the runs that are done; the folder may not even be there.
+fn killed_files(shell: &Shell) -> Vec<PathBuf> {
+    let entries = fs::read_dir(shell.path("killed/runs")).into_iter().flatten();
+    let files = entries.map(|entry| entry.unwrap().path());
+    files.filter(|file| file.extension().is_some_and(|extension| extension == "run")).collect()
+}
+
+#[test]
+fn what_is_done_is_not_done_again_but_what_is_damaged_is() {
+    let shell = tiny();
+    shell.expect("campaign tiny.ron --jobs 2", 0);
+    let expected = bytes(&shell, "out/tiny");
+    let files = run_files(&shell, "out/tiny");
+    let before: Vec<Vec<u8>> = files.iter().map(|file| fs::read(file).unwrap()).collect();
+    // A digit, the end, the whole, and the paths only.
+    let text = String::from_utf8(before[1].clone()).unwrap();
+    fs::write(&files[1], text.replacen("\"scans\":1", "\"scans\":2", 1)).unwrap();
+    fs::write(&files[3], &before[3][..before[3].len() / 2]).unwrap();
+    fs::write(&files[5], "").unwrap();
+    fs::write(&files[7], &before[7][..before[7].len() - 9]).unwrap();
+    fs::copy(&files[8], &files[9]).unwrap();
+    fs::write(shell.path("out/tiny/runs/0.partial"), "cut").unwrap();
+    let typed = shell.expect("campaign tiny.ron --jobs 2", 0);
+    assert_eq!(typed.err.lines().count(), 5, "{typed:?}");
+    for damaged in [1, 3, 5, 7, 9] {
+        let name = files[damaged].file_name().unwrap().to_str().unwrap();
+        assert!(typed.err.contains(&format!("{name}: is damaged")), "{typed:?}");
+    }
+    assert_eq!(bytes(&shell, "out/tiny"), expected);
+    assert_eq!(run_files(&shell, "out/tiny"), files);
+    for (i, file) in files.iter().enumerate() {
+        let same = fs::read(file).unwrap() == before[i];
+        // The times tell that a run was done again.
+        assert_eq!(same, ![1, 3, 5, 7, 9].contains(&i), "run {i}");
+    }
+}
+
+#[test]
+fn results_of_another_version_are_not_mixed_in() {
+    let shell = tiny();
+    shell.expect("campaign tiny.ron --shard 1/2 --out a", 0);
+    shell.expect("campaign tiny.ron --shard 2/2 --out b", 0);
+    let list = fs::read_to_string(shell.path("b/campaign.json")).unwrap();
+    let version = shell.json("b/campaign.json")["version"].as_str().unwrap().to_owned();
+    assert!(version.starts_with(concat!(env!("CARGO_PKG_VERSION"), "+")), "{version}");
+    shell.write("b/campaign.json", list.replace(&version, "0.0.9+other"));
+    shell.refuse("collect a b --out c", &["b: was made by covmap 0.0.9+other", &version]);
+    let stray = run_files(&shell, "a")[0].clone();
+    fs::rename(&stray, stray.with_file_name("0123.run")).unwrap();
+    let typed = shell.expect("campaign tiny.ron --shard 1/2 --out a", 0);
+    assert!(typed.err.contains("a: 1 file is of another version"), "{typed:?}");
+    assert_eq!(run_files(&shell, "a").len(), 7);
+}
+
+#[test]
+fn bad_campaigns_are_refused_before_any_run() {
+    let refuse = |part: &str, instead: &str, expected: &[&str]| {
+        let shell = tiny();
+        shell.write("tiny.ron", campaign(&[(part, instead)]));
+        shell.refuse("campaign tiny.ron --out new", expected);
+    };
+    refuse("\"room.ron\"", "\"rom.ron\"", &["rom.ron: cannot be read"]);
+    refuse("[Cl, ", "[Cl, Cl, ", &["strategies: CL stands there twice"]);
+    refuse("[Cl, IgCl(alpha: 0.3)", "[Ig, IgCl(alpha: -0.3)", &["strategies", "-0.3"]);
+    refuse("\"path_length_m\"", "\"path\"", &["metrics: \"path\" is none", "path_length_m"]);
+    refuse("count: 2)", "count: 0)", &["must lie in 1..="]);
+    refuse("first: 5, count: 2", "first: 5, count: 1000000000", &["1000000000", "1..=100000"]);
+    refuse("first: 5, count: 2", "first: 5, count: 100000", &["more than 100000 runs"]);
+    refuse("count: 2, seed: 1", "count: 1000000000, seed: 1", &["room.ron: starts: 1000000000"]);
+    refuse("Drawn(count: 2, seed: 1)", "Poses([])", &["room.ron: starts: at least one"]);
+    refuse("Drawn(count: 2, seed: 1)", "Poses([(9.0, 1.0, 0.0)])", &["room.ron: the start (9, 1)"]);
+    refuse("max_scans: 12", "while_driving: 0.0", &["every 0 m"]);
+    refuse("max_scans: 12", "overrides: {\"planner.sped\": 1}", &["b21r", "\"planner.sped\""]);
+    refuse("max_scans: 12", "overrides: {\"model.bins\": 1}", &["b21r.ron", "bins"]);
+    refuse("turn: 7.0", "turn: inf", &["worlds: room: turn"]);
+    refuse("metrics:", "meters:", &["tiny.ron:8:", "meters"]);
+    let twice =
+        "[(name: \"a\", file: \"room.ron\"), (name: \"b\", file: \"room.ron\")],\n    settings";
+    let one = campaign(&[]);
+    let worlds =
+        &one[one.find("[(name: \"room\"").unwrap()..one.find(": [(name: \"b21r\"").unwrap()];
+    refuse(worlds, twice, &["a run stands there twice", "a, b21r, CL", "b, b21r, CL"]);
+    let shell = tiny();
+    shell.refuse("campaign nothing.ron", &["nothing.ron: cannot be read"]);
+    shell.refuse("collect nothing", &["nothing: is no folder of a campaign"]);
+    for shard in ["3/2", "0/2", "2", "a/b", "1/0"] {
+        let typed = shell.type_in(&format!("campaign tiny.ron --shard {shard}"));
+        assert_eq!(typed.code, Some(2));
+        assert!(typed.err.contains("a shard is I/N with 1 ≤ I ≤ N"), "{typed:?}");
+    }
+}
+
+#[test]
+fn a_folder_of_something_else_is_left_alone() {
+    let shell = tiny();
+    shell.expect("campaign tiny.ron --out done", 0);
+    shell.write("other.ron", campaign(&[("first: 5", "first: 6")]));
+    shell.refuse("campaign other.ron --out done", &["done: holds", "another campaign", "--out"]);
+    shell.expect("campaign other.ron --out other", 0);
+    shell.refuse("collect done other --out c", &["other: holds another campaign"]);
+    fs::create_dir(shell.path("thesis")).unwrap();
+    shell.write("thesis/chapter.txt", "years of work");
+    shell.refuse("campaign tiny.ron --out thesis", &["thesis: is no folder of a campaign"]);
+    shell.refuse("campaign tiny.ron --out tiny.ron", &["tiny.ron"]);
+    shell.refuse("campaign tiny.ron --out tiny.ron/deeper", &["tiny.ron/deeper"]);
+}
+
+#[test]
+fn a_result_that_cannot_be_written_stops_the_campaign_and_leaves_what_is_done() {
+    let shell = tiny();
+    shell.expect("campaign tiny.ron --shard 1/2", 0);
+    let done = run_files(&shell, "out/tiny");
+    let before: Vec<_> = done.iter().map(|file| fs::read(file).unwrap()).collect();
+    // Folders stand where files are to be.
+    shell.expect("campaign tiny.ron --out all", 0);
+    for file in run_files(&shell, "all") {
+        let name = Path::new("out/tiny/runs").join(file.file_name().unwrap());
+        let place = shell.path(name.with_extension("run").to_str().unwrap());
+        if !place.exists() {
+            fs::create_dir_all(place.join("in the way")).unwrap();
+        }
+    }
+    let typed = shell.expect("campaign tiny.ron", 2);
+    assert!(typed.err.contains(".run: cannot be written: "), "{typed:?}");
+    for (file, bytes) in done.iter().zip(before) {
+        assert_eq!(fs::read(file).unwrap(), bytes);
+    }
+}
+
+#[test]
+#[cfg(unix)]
+fn ctrl_c_ends_a_campaign_and_it_goes_on() {
+    let shell = tiny();
+    shell.write("tiny.ron", campaign(&[("count: 2)", "count: 400)")]));
+    let mut child = shell.command("campaign tiny.ron --jobs 2 --out run").spawn().unwrap();
+    let runs = shell.path("run/runs");
+    let done = || fs::read_dir(&runs).map_or(0, Iterator::count);
+    while done() < 8 {
+        assert!(child.try_wait().unwrap().is_none(), "it ended by itself");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    let pid = child.id().to_string();
+    assert!(std::process::Command::new("kill").args(["-INT", &pid]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let files = run_files(&shell, "run");
+    assert!(files.len() >= 8 && files.iter().all(|file| timeless(file)[0].len() > 99));
+    let table = fs::read_to_string(shell.path("run/runs.csv")).unwrap();
+    assert_eq!(table.lines().count(), files.len() + 1);
+}
+
+#[test]
+fn every_shipped_campaign_is_sound() {
+    let shell = Shell::new();
+    for (name, runs) in [("fig6", 102), ("fig7", 840), ("table1", 60), ("worlds", 100)] {
+        for variant in ["", "-quick"] {
+            let file = shipped(&format!("configs/{name}{variant}.ron"));
+            let typed = shell.expect(&format!("campaign {file} --check"), 0);
+            let building = typed.err.lines().all(|line| line.ends_with("is left out"));
+            assert!(building, "{typed:?}");
+            let count: usize = typed.out.trim().split(' ').nth(1).unwrap().parse().unwrap();
+            assert!(count > 0 && (count == runs || !variant.is_empty()), "{typed:?}");
+        }
+    }
+}
