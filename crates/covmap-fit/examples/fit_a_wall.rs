@@ -38,7 +38,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let truth = grid.cells().filter(|cell| near(*cell)).map(|cell| (cell, covered(cell))).collect();
     let examples = [Example { name: "wall".into(), ring, scans, grid, truth }];
 
-    let begin = ModelParameters::b21r();
+    let begin = ModelParameters::by_hand();
     let settings = FitSettings {
         weighting: Weighting::Cells,
         axes: vec![

@@ -68,7 +68,7 @@ fn example(size: (f64, f64), seed: u64) -> Example {
 
 fn methods() -> Vec<Contender> {
     let contender = |(name, update): (&str, Update)| {
-        let method = Method { model: ModelParameters::b21r(), update };
+        let method = Method { model: ModelParameters::by_hand(), update };
         Contender { name: name.to_owned(), raw: method.clone(), calibrated: method }
     };
     let updates = [

@@ -50,12 +50,12 @@ fn drawn_example(known: &ModelParameters, uniform: &mut impl FnMut() -> f64) -> 
 /// Fits some parameters, each with its known value and its bounds, and compares.
 #[track_caller]
 fn check(searched: &[(Parameter, f64, f64, f64)]) {
-    let mut known = ModelParameters::b21r();
+    let mut known = ModelParameters::by_hand();
     searched.iter().for_each(|(parameter, value, ..)| parameter.set(&mut known, *value));
     let mut uniform = random(5);
     let examples: Vec<Example> = (0..24).map(|_| drawn_example(&known, &mut uniform)).collect();
 
-    let begin = ModelParameters::b21r();
+    let begin = ModelParameters::by_hand();
     let axis =
         |&(parameter, _, from, to): &(Parameter, f64, f64, f64)| Axis { parameter, from, to };
     let settings = FitSettings {

@@ -130,7 +130,7 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, PI};
 
     fn model() -> SensorModel {
-        SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1).unwrap()
+        SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), 0.1).unwrap()
     }
 
     fn empty_map() -> CoverageMap {

@@ -94,7 +94,7 @@ mod tests {
     use nalgebra::{Isometry2, Point2};
 
     fn repeat(clamp: Option<(f64, f64)>, times: usize) -> Raster<Option<f64>> {
-        let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1).unwrap();
+        let model = SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), 0.1).unwrap();
         let grid = Grid::new(Point2::new(-2.0, -2.0), 0.1, 40, 40).unwrap();
         let parameters = OccupancyParameters { clamp, ..OccupancyParameters::default() };
         let mut occupancy = OccupancyGrid::new(grid, parameters);

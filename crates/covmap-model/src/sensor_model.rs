@@ -174,11 +174,11 @@ mod tests {
     use proptest::prelude::*;
 
     fn model() -> SensorModel {
-        SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1).unwrap()
+        SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), 0.1).unwrap()
     }
 
     fn refuse(change: impl Fn(&mut ModelParameters)) -> ModelError {
-        let mut parameters = ModelParameters::b21r();
+        let mut parameters = ModelParameters::by_hand();
         change(&mut parameters);
         SensorModel::new(&parameters, &SonarRing::b21r(), 0.1).unwrap_err()
     }
@@ -204,7 +204,7 @@ mod tests {
 
     #[test]
     fn evidence_ends_twenty_centimetres_behind() {
-        let parameters = ModelParameters { behind: 0.2, ..ModelParameters::b21r() };
+        let parameters = ModelParameters { behind: 0.2, ..ModelParameters::by_hand() };
         let model = SensorModel::new(&parameters, &SonarRing::b21r(), 0.1).unwrap();
         assert!((model.reach(Outcome::Echo(1.0)) - 1.25).abs() < 1e-12);
         assert_eq!(model.reach(Outcome::NoEcho), 1.0);
@@ -240,7 +240,7 @@ mod tests {
         fn evidence_is_a_distribution_and_never_rules_anything_out(
             distance in 0.0..3.5f64, range in 0.0..3.0f64, tempering in 0.1..=1.0f64
         ) {
-            let parameters = ModelParameters { tempering, ..ModelParameters::b21r() };
+            let parameters = ModelParameters { tempering, ..ModelParameters::by_hand() };
             let model = SensorModel::new(&parameters, &SonarRing::b21r(), 0.1).unwrap();
             for outcome in [Outcome::Echo(range), Outcome::Beyond(range + 3.0), Outcome::NoEcho] {
                 let mut p = [0.0; 11];

@@ -23,7 +23,7 @@ struct Setting {
 
 fn setting(strategy: Strategy, bins: usize, change: impl Fn(&mut PlannerParameters)) -> Setting {
     let mut model_parameters =
-        ModelParameters { bins, usable_range: 1.5, ..ModelParameters::b21r() };
+        ModelParameters { bins, usable_range: 1.5, ..ModelParameters::by_hand() };
     if bins < 11 {
         // Few bins cannot show a narrow Gaussian.
         (model_parameters.sigma_out.base, model_parameters.sigma_in) = (0.12, 0.3);

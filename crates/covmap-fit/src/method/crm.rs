@@ -249,7 +249,7 @@ mod tests {
     use nalgebra::{Isometry2, Point2};
 
     fn map_after(range: Range, times: usize) -> CoverageMap {
-        let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1).unwrap();
+        let model = SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), 0.1).unwrap();
         let grid = Grid::new(Point2::new(-3.0, -3.0), 0.1, 60, 60).unwrap();
         let mut ranges = vec![Range::Missing; 24];
         ranges[0] = range;
