@@ -10,17 +10,21 @@ use std::path::Path;
 /// n* is not looked for beyond four times the paper's 130.
 const MOST_COUNTS: f64 = 520.0;
 
-/// A quick run of an ablation ends after so many scans.
-const QUICK_SCANS: usize = 300;
+/// A quick run ends after so many scans.
+pub(super) const QUICK_SCANS: usize = 600;
 
 /// The two configurations: the first decides the verdicts.
 pub(crate) const PAPER: &str = "paper";
 pub(crate) const B21R: &str = "b21r";
 
-/// The campaign of a figure, or its quick variant, from its file.
+/// The campaign of a figure, from its file; or its quick variant, whose runs are cut short.
 pub(crate) fn campaign(name: &str, quick: bool) -> Result<Campaign> {
     let variant = if quick { "-quick" } else { "" };
-    Campaign::read(Path::new(&format!("configs/{name}{variant}.ron")))
+    let mut campaign = Campaign::read(Path::new(&format!("configs/{name}{variant}.ron")))?;
+    if quick {
+        campaign.settings.iter_mut().for_each(|setting| setting.max_scans = Some(QUICK_SCANS));
+    }
+    Ok(campaign)
 }
 
 impl Series {

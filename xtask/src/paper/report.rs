@@ -1,6 +1,7 @@
 //! The page that says, claim by claim, what came out; and the same for machines.
 
 use super::claims::Evidence;
+use super::experiments::QUICK_SCANS;
 use super::html::Page;
 use super::session::Series;
 use super::tables::{self, Table};
@@ -117,9 +118,10 @@ impl Report {
             self.seconds
         ));
         if self.quick {
-            page.paragraph(
-                "A quick look: coarse cells and few seeds. Most claims must stay undecided so; this is no result.",
-            );
+            page.paragraph(&format!(
+                "A quick look: small worlds, coarse cells, few seeds, and runs that end after {QUICK_SCANS} scans. Most \
+                 claims must stay undecided so; this is no result."
+            ));
         }
         page.paragraph(
             "configs/paper.ron decides the verdicts; configs/b21r.ron, with our additions, is a second column. Nothing \
