@@ -1,11 +1,17 @@
 //! What can be typed.
 
+mod experiments;
+mod values;
+
+pub(crate) use experiments::{Experiments, Figure, Table};
+
 use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_plan::Strategy;
-use nalgebra::{Isometry2, Vector2};
+use nalgebra::Isometry2;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use values::{every, every_degrees, range, resolution, start, while_driving};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -138,33 +144,6 @@ Example:
   cargo xtask fit configs/fit/b21r.ron --out out/fit
 ";
 
-const FIGURE_EXAMPLES: &str = "\
-DIR/figureN.svg and .png are the figure, DIR/figureN*.csv the numbers behind it. Figures 5, 6 and 7
-need campaigns, which are taken from DIR/campaigns as far as they are done there.
-
-Examples:
-  cargo xtask figure 1
-  cargo xtask figure 7 --quick --out out/quick
-";
-
-const PAPER_EXAMPLES: &str = "\
-The folder that is written:
-  report.html               all figures, tables and verdicts, in one file
-  claims.json               the verdicts with their figures and tests
-  figure*.svg, .png, .csv   the figures, and the numbers behind them
-  campaigns/                the runs; begun again, only what is missing is run
-
-A claim is `reproduced`, `not reproduced` or `undecided`. configs/paper.ron decides; configs/b21r.ron
-is a second column.
-
-Examples:
-  cargo xtask paper --out out/paper
-  cargo xtask paper --quick --out out/quick
-
-Exit codes: 0 done, whatever the verdicts; 2 bad input, or a result that cannot be written; 130
-interrupted with Ctrl-C.
-";
-
 const READINGS_EXAMPLES: &str = "\
 Examples:
   cargo xtask survey LOG --out out/truth.ron
@@ -261,12 +240,12 @@ pub(crate) enum Command {
     #[command(after_help = BENCH_EXAMPLES)]
     Bench(Bench),
     /// Draws a figure of the paper from its own experiment.
-    #[command(after_help = FIGURE_EXAMPLES)]
+    #[command(after_help = experiments::FIGURE_EXAMPLES)]
     Figure(Figure),
     /// Makes a table of the paper from its own experiment.
     Table(Table),
     /// Runs all of the paper's experiments, draws all figures, and judges all claims.
-    #[command(after_help = PAPER_EXAMPLES)]
+    #[command(after_help = experiments::PAPER_EXAMPLES)]
     Paper(Experiments),
     /// Runs worlds × settings × strategies × starts × seeds, and goes on where it was stopped.
     #[command(after_help = CAMPAIGN_EXAMPLES)]
@@ -460,41 +439,6 @@ pub(crate) struct Bench {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Figure {
-    /// Which: 1, 2, 3, 5, 6 or 7
-    #[arg(value_parser = ["1", "2", "3", "5", "6", "7"])]
-    pub(crate) number: String,
-    #[command(flatten)]
-    pub(crate) common: Experiments,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Table {
-    /// Which: there is only 1
-    #[arg(value_parser = ["1"])]
-    pub(crate) number: String,
-    #[command(flatten)]
-    pub(crate) common: Experiments,
-}
-
-/// How the paper's experiments are run.
-#[derive(Debug, Args)]
-pub(crate) struct Experiments {
-    /// Fewer seeds, coarser cells, smaller worlds: a look, not a result
-    #[arg(long)]
-    pub(crate) quick: bool,
-    /// So many runs at the same time [default: one for each core]
-    #[arg(long, value_name = "N")]
-    pub(crate) jobs: Option<NonZeroUsize>,
-    /// Where results go, and from where runs that are done are taken
-    #[arg(long, value_name = "DIR", default_value = "out/paper")]
-    pub(crate) out: PathBuf,
-    /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
-}
-
-#[derive(Debug, Args)]
 pub(crate) struct Campaign {
     /// What is run (.ron)
     #[arg(value_name = "CAMPAIGN.ron")]
@@ -535,40 +479,4 @@ pub(crate) struct Collect {
 fn named_file(text: &str) -> Result<(String, PathBuf), String> {
     let (name, file) = text.split_once('=').ok_or("it is NAME=FILE")?;
     Ok((name.to_owned(), file.into()))
-}
-
-fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {
-    let value: f64 = text.trim().parse().map_err(|_| "not a number".to_owned())?;
-    let good = (min..=max).contains(&value);
-    good.then_some(value).ok_or_else(|| format!("it must lie in [{min}, {max}] m"))
-}
-
-fn resolution(text: &str) -> Result<f64, String> {
-    number(text, 1e-3, 10.0)
-}
-
-fn while_driving(text: &str) -> Result<f64, String> {
-    number(text, 0.01, 1e6)
-}
-
-fn every(text: &str) -> Result<f64, String> {
-    number(text, 0.0, 1e3)
-}
-
-fn every_degrees(text: &str) -> Result<f64, String> {
-    number(text, 0.0, 360.0).map_err(|error| error.replace(" m", " degrees"))
-}
-
-fn range(text: &str) -> Result<f64, String> {
-    number(text, 1e-3, 100.0)
-}
-
-fn start(text: &str) -> Result<Isometry2<f64>, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y, degrees]) if [x, y, degrees].iter().all(|v| v.is_finite() && v.abs() < 1e7) => {
-            Ok(Isometry2::new(Vector2::new(x, y), degrees.to_radians()))
-        }
-        _ => Err("three finite numbers are needed, as in 1.5,6,90".to_owned()),
-    }
 }

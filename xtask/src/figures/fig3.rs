@@ -15,11 +15,19 @@ pub(crate) fn write(output: &Output, models: &[(&str, &SensorModel)]) -> Result<
     for (name, model) in models {
         model::write_table(&output.path(&format!("figure3-{name}.csv")), model, RANGE)?;
     }
+    let panels: Vec<HeatMap> = models.iter().map(|(name, model)| panel(name, model)).collect();
+    // One scale for all, up to the largest value.
+    let values = panels.iter().flat_map(|panel| &panel.values).filter(|value| value.is_finite());
+    let largest = values.fold(0.0, |a: f64, b| a.max(*b));
+    let scaled = |mut panel: HeatMap| {
+        panel.value.to = Some(largest);
+        panel.into()
+    };
     let figure = Figure {
         title: format!("Fig. 3: the sensor model at a measured distance d = {RANGE} m"),
         subtitle: "probability of each coverage of a cell, over its distance from the sensor"
             .into(),
-        panels: models.iter().map(|(name, model)| panel(name, model).into()).collect(),
+        panels: panels.into_iter().map(scaled).collect(),
         columns: 2,
     };
     output.figure("figure3", &figure)
@@ -32,11 +40,11 @@ fn panel(name: &str, model: &SensorModel) -> HeatMap {
     let coverages: Vec<f64> = (0..bins).map(|bin| bin_coverage(bin, bins)).collect();
     let row = |bin: usize| columns.iter().map(move |column| column[bin]);
     HeatMap {
-        title: name.to_owned(),
+        title: format!("{name}.ron"),
         subtitle: String::new(),
         x: ChartAxis::new("distance of the cell [m]"),
         y: ChartAxis::new("coverage x"),
-        value: ChartAxis { from: Some(0.0), to: Some(1.0), ..ChartAxis::new("p(c = x | d)") },
+        value: ChartAxis { from: Some(0.0), ..ChartAxis::new("p(c = x | d)") },
         x_edges: HeatMap::edges(&distances),
         y_edges: HeatMap::edges(&coverages),
         values: (0..bins).flat_map(row).collect(),

@@ -9,15 +9,15 @@ use crate::input;
 use anyhow::Result;
 use covmap_explore::Config;
 use covmap_model::SensorModel;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Seeds of Fig. 1 and 2.
 const SEEDS: u64 = 100;
 const QUICK_SEEDS: u64 = 20;
 
-/// One of the two configurations, by its name.
+/// One of the two configurations, as shipped, by its name.
 pub(crate) fn config(name: &str) -> Result<(Config, PathBuf)> {
-    input::config(Some(Path::new(&format!("configs/{name}.ron"))))
+    if name == PAPER { input::paper_config() } else { input::config(None) }
 }
 
 /// Fig. 1 and 2: the cell that is covered 20 %, with both configurations.
