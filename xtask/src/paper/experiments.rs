@@ -11,7 +11,7 @@ use std::path::Path;
 const MOST_COUNTS: f64 = 520.0;
 
 /// A quick run ends after so many scans.
-pub(super) const QUICK_SCANS: usize = 600;
+pub(super) const QUICK_SCANS: usize = 2000;
 
 /// The two configurations: the first decides the verdicts.
 pub(crate) const PAPER: &str = "paper";
@@ -61,6 +61,8 @@ pub(crate) fn n_star(session: &Session<'_>, table_1: &Series) -> Result<Series> 
         let strategy = Strategy::Count { times, half_distance: Some(2.0) };
         settings.push(Setting { strategies: Some(vec![strategy]), ..setting.clone() });
     }
+    // So many scans take long: one seed from every start.
+    campaign.seeds.count = 1;
     campaign.settings = settings;
     campaign.strategies = Vec::new();
     session.run(campaign)
@@ -72,6 +74,8 @@ pub(crate) fn ablation(session: &Session<'_>) -> Result<Series> {
     if session.quick {
         campaign.name.push_str("-quick");
         campaign.starts = Starts::Given;
+        // In coarse cells all the same.
+        campaign.settings.retain(|setting| !setting.overrides.contains_key("resolution"));
         campaign.worlds.iter_mut().for_each(|world| world.resolution = Some(0.2));
         campaign.settings.iter_mut().for_each(|setting| setting.max_scans = Some(QUICK_SCANS));
     }
