@@ -311,8 +311,9 @@ pub(crate) enum SensorName {
 pub(crate) struct Map {
     /// A CARMEN log, or a folder with od.txt, sonar.txt and laser.txt
     pub(crate) log: PathBuf,
-    /// Resolution, robot and sensor model [default: configs/sonar8.ron for a folder,
-    /// configs/b21r.ron for a CARMEN log; both are built in]
+    /// Resolution, robot and sensor model [default: configs/laser.ron for a laser,
+    /// configs/sonar8.ron for the sonars of a folder, configs/b21r.ron for those of a CARMEN
+    /// log; all are built in]
     #[arg(long, value_name = "FILE")]
     pub(crate) config: Option<PathBuf>,
     /// Poses instead of the log's: lines `t_ms x_m y_m theta_rad` in the order of time

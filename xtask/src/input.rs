@@ -45,6 +45,11 @@ pub(crate) fn folder_config(file: Option<&Path>) -> Result<(Config, PathBuf)> {
     config_or(file, (FOLDER_CONFIG_NAME, FOLDER_CONFIG))
 }
 
+/// The configuration in a file, or the default for lasers.
+pub(crate) fn laser_config(file: Option<&Path>) -> Result<(Config, PathBuf)> {
+    config_or(file, ("configs/laser.ron", include_str!("../../configs/laser.ron")))
+}
+
 fn config_or(file: Option<&Path>, (name, text): (&str, &str)) -> Result<(Config, PathBuf)> {
     let name = file.unwrap_or(Path::new(name));
     let config = match file {

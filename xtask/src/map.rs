@@ -2,6 +2,7 @@
 
 use crate::arguments::{Map, SensorName};
 use crate::input::about;
+use crate::interrupt::{self, Interrupt};
 use crate::map_pictures::MapPictures;
 use crate::mapper::{Log, Mapper, Stride, Survey};
 use crate::progress::Progress;
@@ -56,10 +57,13 @@ struct CellCounts {
 
 pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     let begun = Instant::now();
+    let interrupt = Interrupt::listen()?;
     let config = config(arguments)?;
     let log = log(arguments, &config)?;
     let mut progress = Progress::new(arguments.quiet);
-    let survey = log.survey(&mut progress)?;
+    let Some(survey) = log.survey(&mut progress, &interrupt)? else {
+        return Ok(interrupt::EXIT_CODE.into());
+    };
     let (model, remark) = model(&config, arguments.sensor, &survey.ring)?;
     let grid = survey.grid(&model, config.robot.radius, &log.path)?;
     input::check_size(&grid, &config).map_err(about(&log.path))?;
@@ -68,7 +72,7 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     let stride = Stride { every: arguments.every, turn: arguments.every_degrees.to_radians() };
     let folder = OutputFolder::create(folder_name(arguments))?;
     let mapper = Mapper::new(grid, model, stride, body)?;
-    let mapper = log.map(&survey, mapper, &mut progress)?;
+    let mapper = log.map(&survey, mapper, &mut progress, &interrupt)?;
     progress.say("drawing the map …");
     let seconds = begun.elapsed().as_secs_f64();
     let summary = summary(arguments, &survey, &mapper, seconds);
@@ -78,13 +82,16 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     if !arguments.quiet {
         report(arguments, &summary, remark.as_deref(), &written);
     }
-    Ok(ExitCode::SUCCESS)
+    Ok(if mapper.stopped { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
 }
 
 fn config(arguments: &Map) -> Result<Config> {
     let file = arguments.config.as_deref();
-    let (mut config, name) =
-        if arguments.log.is_dir() { input::folder_config(file)? } else { input::config(file)? };
+    let (mut config, name) = match arguments.sensor {
+        SensorName::Laser => input::laser_config(file)?,
+        SensorName::Sonar if arguments.log.is_dir() => input::folder_config(file)?,
+        SensorName::Sonar => input::config(file)?,
+    };
     if let Some(resolution) = arguments.resolution {
         config.resolution = resolution;
     }
@@ -173,8 +180,18 @@ fn summary(arguments: &Map, survey: &Survey, mapper: &Mapper, seconds: f64) -> M
         cells: CellCounts { known, unknown: map.grid().len() - known },
         share_entropy_above_0_65: share_uncertain(map),
         seconds,
-        warning: (!skipped.is_empty()).then(|| skipped.to_string()),
+        warning: warning(skipped, mapper),
     }
+}
+
+/// What of the log is not in the map.
+fn warning(skipped: &Skipped, mapper: &Mapper) -> Option<String> {
+    let skipped = (!skipped.is_empty()).then(|| skipped.to_string());
+    let stopped = mapper
+        .stopped
+        .then(|| format!("stopped by Ctrl-C after {} frames", mapper.scans + mapper.standing));
+    let all: Vec<String> = skipped.into_iter().chain(stopped).collect();
+    (!all.is_empty()).then(|| all.join("; "))
 }
 
 /// The share of the known cells that are not pinned with an entropy above .65 nats.

@@ -1,5 +1,6 @@
 //! The map of a log: once through it for its extent, and once for its evidence.
 
+use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::trail::Trail;
 use anyhow::{Result, anyhow, bail};
@@ -54,8 +55,12 @@ pub(crate) struct Survey {
 }
 
 impl Log {
-    /// Reads the log once.
-    pub(crate) fn survey(&self, progress: &mut Progress) -> Result<Survey> {
+    /// Reads the log once; `None` if that was stopped.
+    pub(crate) fn survey(
+        &self,
+        progress: &mut Progress,
+        interrupt: &Interrupt,
+    ) -> Result<Option<Survey>> {
         let mut reader = LogReader::open(&self.path, &self.options)?;
         let first = reader.next().ok_or_else(|| anyhow!("{}: is empty", self.path.display()))??;
         let here = Point2::from(first.scan.pose.translation.vector);
@@ -65,17 +70,21 @@ impl Log {
             (low, high) = (low.inf(&here), high.sup(&here));
             frames += 1;
             progress.tell(|| format!("reading the log: {frames} frames"));
+            if interrupt.is_pressed() {
+                return Ok(None);
+            }
         }
         let skipped = reader.skipped().clone();
-        Ok(Survey { ring: (*first.ring).clone(), skipped, low, high })
+        Ok(Some(Survey { ring: (*first.ring).clone(), skipped, low, high }))
     }
 
-    /// Reads the log once more, into the map.
+    /// Reads the log once more, into the map, to its end or until that is stopped.
     pub(crate) fn map(
         &self,
         survey: &Survey,
         mut mapper: Mapper,
         progress: &mut Progress,
+        interrupt: &Interrupt,
     ) -> Result<Mapper> {
         for frame in LogReader::open(&self.path, &self.options)? {
             let frame = frame?;
@@ -90,6 +99,10 @@ impl Log {
                     frame.scan.time
                 )
             });
+            if interrupt.is_pressed() {
+                mapper.stopped = true;
+                break;
+            }
         }
         Ok(mapper)
     }
@@ -145,6 +158,8 @@ pub(crate) struct Mapper {
     pub(crate) standing: usize,
     /// Places where the poses jump.
     pub(crate) jumps: usize,
+    /// The log was not read to its end.
+    pub(crate) stopped: bool,
     pub(crate) first: Option<Isometry2<f64>>,
     pub(crate) last: Option<Isometry2<f64>>,
     last_used: Option<Isometry2<f64>>,
@@ -169,6 +184,7 @@ impl Mapper {
             scans: 0,
             standing: 0,
             jumps: 0,
+            stopped: false,
             first: None,
             last: None,
             last_used: None,

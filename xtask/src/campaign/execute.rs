@@ -10,9 +10,10 @@ use covmap_explore::{
 };
 use covmap_plan::Strategy;
 use covmap_world::{Extent, Scenario, Surface, World};
+use cpu_time::ThreadTime;
 use indexmap::IndexMap;
 use std::ops::ControlFlow;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// The share of explored cells is looked at again after so many metres …
 const LOOK_AFTER: f64 = 0.5;
@@ -47,7 +48,7 @@ fn measure(
     keep_paths: bool,
     watch: &dyn Fn() -> ControlFlow<()>,
 ) -> Result<Option<Measured>> {
-    let begun = Instant::now();
+    let begun = ThreadTime::now();
     let truth = Truth::new(world, mission);
     let prepared = begun.elapsed();
     let mut hasher = TraceHasher::default();
@@ -56,15 +57,16 @@ fn measure(
     let mut tally = Tally::new(mission)?;
     let mut deciding = Duration::ZERO;
     let (mut explored, mut look_at) = (Vec::new(), 0.0);
-    // The time of what is done here is not the run's.
+    // A run has a thread of its own, and its time is the one that this thread computes; without
+    // that of what is done here.
     let mut aside = Duration::ZERO;
-    let begun = Instant::now();
-    let mut last = Instant::now();
+    let begun = ThreadTime::now();
+    let mut last = ThreadTime::now();
     let run = explore(mission, &mut robot, &mut |event, view| {
-        let now = Instant::now();
+        let now = ThreadTime::now();
         hasher.add(event);
         match event {
-            Event::Decision { .. } => deciding += now - last,
+            Event::Decision { .. } => deciding += now.duration_since(last),
             Event::Scan { scan, .. } => tally.add(view.map, scan),
             Event::Bump { .. } | Event::End { .. } => {}
         }
@@ -74,15 +76,15 @@ fn measure(
             explored.push((rounded(view.path_length, 1e3), rounded(share, 1e6)));
             look_at = view.path_length + LOOK_AFTER.max(LOOK_AFTER_SHARE * view.path_length);
         }
-        last = Instant::now();
-        aside += last - now;
+        last = ThreadTime::now();
+        aside += last.duration_since(now);
         watch()
     })?;
     if run.ending == Ending::Interrupted {
         return Ok(None);
     }
     let seconds = (begun.elapsed().saturating_sub(aside)).as_secs_f64();
-    let scoring = Instant::now();
+    let scoring = ThreadTime::now();
     hasher.add_bytes(&run.map.to_bytes());
     let scored = truth.scored_cells(world, mission, &run);
     let score = truth.score(&run.map, &scored);
