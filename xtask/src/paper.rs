@@ -43,7 +43,8 @@ pub(crate) fn run(arguments: &Experiments) -> Result<ExitCode> {
         let ablation = ablation(session)?;
         let columns = [judge(claims::all(&paper)), judge(claims::all(&b21r))];
         let seconds = begun.elapsed().as_secs_f64();
-        let report = Report { quick: session.quick, columns, paper, b21r, ablation, seconds };
+        let (quick, ran) = (session.quick, session.ran());
+        let report = Report { quick, columns, paper, b21r, ablation, ran, seconds };
         report.write(output)?;
         if !session.quiet {
             tell(&report);

@@ -3,7 +3,7 @@
 use super::claims::Evidence;
 use super::experiments::QUICK_SCANS;
 use super::html::Page;
-use super::session::Series;
+use super::session::{RAN, Series};
 use super::tables::{self, Table};
 use super::trial::{Judged, Trial, Verdict, digits, shown};
 use crate::campaign::VERSION;
@@ -22,6 +22,8 @@ pub(super) struct Report {
     pub(super) paper: Evidence,
     pub(super) b21r: Evidence,
     pub(super) ablation: Series,
+    /// What was run, a row for each setting of each campaign.
+    pub(super) ran: Vec<Vec<String>>,
     /// How long it took, without what had been run before.
     pub(super) seconds: f64,
 }
@@ -104,6 +106,8 @@ impl Report {
             }
         }
         self.beyond(&mut page);
+        page.heading(2, "What was run");
+        page.table(&RAN, &self.ran);
         page.finish(title)
     }
 
@@ -124,7 +128,8 @@ impl Report {
             ));
         }
         page.paragraph(
-            "configs/paper.ron decides the verdicts; configs/b21r.ron, with our additions, is a second column. Nothing \
+            "configs/paper.ron decides the verdicts; configs/b21r.ron, with our additions, is a second column. What the \
+             campaigns set otherwise, because runs would not end or never begin without it, stands under What was run. Nothing \
              was tuned for a claim, and thresholds were written before results were seen. The unit is a paired (start, \
              seed). Tests: Student's t on the standard error of a bootstrap that draws whole starts; a claim needs all its \
              tests, and pays for the others by Holm's correction. Where the robot did not explore its world, nothing is \

@@ -64,16 +64,21 @@ fn share(
     share_estimate(cell.series.iter().filter(|series| is(series)).count(), seeds)
 }
 
-/// The coverages of the peaks of a posterior: bins above both neighbours that hold at least
-/// 1 %.
+/// The coverages of the peaks of a posterior: bins, or runs of equal ones (the first of them
+/// counts), that are above what stands beside them and hold at least 1 %.
 fn peaks(posterior: &[f64]) -> Vec<f64> {
-    let at = |bin: Option<usize>| bin.and_then(|b| posterior.get(b)).copied().unwrap_or(0.0);
-    let is_peak = |bin: &usize| {
-        let p = posterior[*bin];
-        p >= 0.01 && p > at(bin.checked_sub(1)) && p >= at(Some(bin + 1))
-    };
     let bins = posterior.len();
-    (0..bins).filter(is_peak).map(|bin| bin_coverage(bin, bins)).collect()
+    let (mut peaks, mut first) = (Vec::new(), 0);
+    for run in posterior.chunk_by(|a, b| a.total_cmp(b).is_eq()) {
+        let next = first + run.len();
+        let beside = |bin: Option<usize>| bin.and_then(|b| posterior.get(b)).copied();
+        let lower = |bin| beside(bin).is_none_or(|p| p < run[0]);
+        if run[0] >= 0.01 && lower(first.checked_sub(1)) && lower(Some(next)) {
+            peaks.push(bin_coverage(first, bins));
+        }
+        first = next;
+    }
+    peaks
 }
 
 /// Fig. 3: mass near 0 in front, near 1 just behind, broadest in the end cell.
