@@ -186,7 +186,7 @@ impl Folder {
 /// A run that is recorded, or not, or not any longer.
 #[derive(Debug)]
 pub(crate) enum Recorded {
-    Whole(RunRecord),
+    Whole(Box<RunRecord>),
     Missing,
     /// Its file is damaged.
     Damaged(PathBuf),
@@ -210,7 +210,7 @@ pub(crate) fn read(dir: &Path, planned: &Planned, with_paths: bool) -> Recorded 
         let same = outcome.id == planned.id && outcome.key == planned.key;
         same.then_some(RunRecord { key: outcome.key, values: outcome.values, times })
     })();
-    record.map_or(Recorded::Damaged(file), Recorded::Whole)
+    record.map_or(Recorded::Damaged(file), |record| Recorded::Whole(Box::new(record)))
 }
 
 /// All recorded runs of a campaign, in its order, and the files that are damaged.
@@ -220,7 +220,7 @@ pub(crate) fn read_all(dir: &Path, manifest: &Manifest) -> (Vec<RunRecord>, Vec<
     let (mut records, mut damaged) = (Vec::new(), Vec::new());
     for recorded in all {
         match recorded {
-            Recorded::Whole(record) => records.push(record),
+            Recorded::Whole(record) => records.push(*record),
             Recorded::Damaged(file) => damaged.push(file),
             Recorded::Missing => {}
         }

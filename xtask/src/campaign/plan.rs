@@ -207,7 +207,7 @@ impl Source {
             let digest = Digest::default().with(bytes(file)?).with_numbers(&moves);
             return Ok(Self { kind: Kind::Scenario(scenario), digest });
         }
-        if moves != [0.0; 3] {
+        if moves.iter().any(|v| v.abs() > 0.0) {
             bail!("worlds: {}: only scenarios can be turned and shifted", world.name);
         }
         // What is no map of map_server is refused when the world is made of it.
