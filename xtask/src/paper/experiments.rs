@@ -11,7 +11,7 @@ use std::path::Path;
 const MOST_COUNTS: f64 = 520.0;
 
 /// A quick run ends after so many scans.
-pub(super) const QUICK_SCANS: usize = 2000;
+pub(super) const QUICK_SCANS: usize = 1000;
 
 /// The two configurations: the first decides the verdicts.
 pub(crate) const PAPER: &str = "paper";
