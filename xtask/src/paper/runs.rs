@@ -161,10 +161,14 @@ pub(crate) fn mean(units: &[&Vec<f64>], place: usize) -> f64 {
     units.iter().map(|unit| unit[place]).sum::<f64>() / n
 }
 
-/// Runs for tests: strategy, start, seed and numbers by name.
+/// A run for tests: strategy, start, seed and numbers by name.
 #[cfg(test)]
-pub(crate) fn made_up(rows: &[(&str, usize, u64, &[(&str, f64)])]) -> Runs {
-    let run = |(strategy, start, seed, values): &(&str, usize, u64, &[(&str, f64)])| Run {
+pub(crate) type Row<'a> = (&'a str, usize, u64, &'a [(&'a str, f64)]);
+
+/// Runs for tests.
+#[cfg(test)]
+pub(crate) fn made_up(rows: &[Row<'_>]) -> Runs {
+    let run = |(strategy, start, seed, values): &Row<'_>| Run {
         world: "apartment".into(),
         strategy: strategy.parse().unwrap(),
         start: *start,
@@ -199,7 +203,7 @@ mod tests {
 
     #[test]
     fn runs_are_paired_by_start_and_seed_and_unpaired_ones_left_out() {
-        let rows: [(&str, usize, u64, &[(&str, f64)]); 5] = [
+        let rows: [Row<'_>; 5] = [
             ("CL", 0, 1, &[("scans", 10.0)]),
             ("IG", 0, 1, &[("scans", 4.0)]),
             ("CL", 1, 1, &[("scans", 20.0)]),
