@@ -2,20 +2,20 @@
 
 use super::Estimate;
 
-/// The share `successes / trials` of independent trials as an estimate, after Agresti and
-/// Coull: two successes and two failures are added for its error, so that "always" is not
-/// certain. `None` without trials.
+/// The share of successes among independent trials as an estimate, after Agresti and Coull:
+/// two successes and two failures are added, so that "always" is not certain. `None` without
+/// trials.
 ///
 /// # Formula
 /// ```text
-/// p̃ = (successes + 2) / (trials + 4)    standard error = √(p̃ (1 − p̃) / (trials + 4))
+/// value p̃ = (successes + 2) / (trials + 4)    standard error = √(p̃ (1 − p̃) / (trials + 4))
 /// ```
 pub fn share_estimate(successes: usize, trials: usize) -> Option<Estimate> {
     #[allow(clippy::cast_precision_loss, reason = "a few hundred trials")]
     let (k, n) = (successes as f64, trials as f64);
     let p = (k + 2.0) / (n + 4.0);
     let standard_error = (p * (1.0 - p) / (n + 4.0)).sqrt();
-    (trials > 0).then_some(Estimate { value: k / n, standard_error, groups: trials })
+    (trials > 0).then_some(Estimate { value: p, standard_error, groups: trials })
 }
 
 #[cfg(test)]

@@ -21,12 +21,12 @@ pub(crate) fn claim_1(cells: &[PartialCell]) -> Finding {
         let right = share(cell, |series| (series.mode[last] - COVERAGE).abs() < 1e-6);
         [
             Trial::new(
-                format!("{name}: share of seeds with an occupancy > .99"),
+                format!("{name}: share of seeds (Agresti–Coull) with an occupancy > .99"),
                 occupied,
                 Bound::Above(MOST_SEEDS),
             ),
             Trial::new(
-                format!("{name}: share of seeds whose most likely coverage is .2"),
+                format!("{name}: share of seeds (Agresti–Coull) whose most likely coverage is .2"),
                 right,
                 Bound::Above(MOST_SEEDS),
             ),
@@ -48,7 +48,9 @@ pub(crate) fn claim_2(cells: &[PartialCell]) -> Finding {
             |s| matches!(peaks(&s.posterior)[..], [at] if (at - COVERAGE).abs() < 0.1 + 1e-6),
         )
     };
-    let what = format!("(a), the case of Eq. 10: share of seeds with one peak there after {FIG_2}");
+    let what = format!(
+        "(a), the case of Eq. 10: share of seeds (Agresti–Coull) with one peak there after {FIG_2}"
+    );
     let trial = Trial::new(what, cells.first().and_then(peaked), Bound::Above(MOST_SEEDS));
     let finding = Finding::new(2, statement, vec![trial]);
     cells.iter().skip(1).fold(finding, |finding, cell| {
