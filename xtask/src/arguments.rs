@@ -5,13 +5,14 @@ mod values;
 
 pub(crate) use experiments::{Experiments, Figure, Table};
 
+use crate::bench::Point;
 use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_plan::Strategy;
 use nalgebra::Isometry2;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use values::{every, every_degrees, range, resolution, start, while_driving};
+use values::{every, every_degrees, named_file, range, resolution, start, while_driving};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -437,6 +438,29 @@ pub(crate) struct Bench {
     /// Smaller maps and samples: a look, not a measurement
     #[arg(long)]
     pub(crate) quick: bool,
+    /// These rows alone
+    #[arg(long, value_enum)]
+    pub(crate) only: Option<Rows>,
+    /// How time and memory of a decision grow instead: writes growth.csv, .svg and .png into
+    /// this folder
+    #[arg(long, value_name = "DIR", conflicts_with = "only")]
+    pub(crate) growth: Option<PathBuf>,
+    /// One point of --growth, by a process of its own
+    #[arg(long, hide = true, value_name = "SIDE:BINS:RANGE")]
+    pub(crate) point: Option<Point>,
+}
+
+/// What `bench` measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Rows {
+    /// Choosing view-points by information gain
+    Decisions,
+    /// Integrating scans
+    Integrating,
+    /// Distance fields
+    Fields,
+    /// Firing the ring
+    Firing,
 }
 
 #[derive(Debug, Args)]
@@ -475,9 +499,4 @@ pub(crate) struct Collect {
     /// Print nothing but errors and notes
     #[arg(long)]
     pub(crate) quiet: bool,
-}
-
-fn named_file(text: &str) -> Result<(String, PathBuf), String> {
-    let (name, file) = text.split_once('=').ok_or("it is NAME=FILE")?;
-    Ok((name.to_owned(), file.into()))
 }

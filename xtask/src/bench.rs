@@ -8,18 +8,20 @@ mod clock;
 mod decisions;
 mod fields;
 mod firing;
+mod growth;
 mod integrating;
 mod literal;
 mod situation;
 mod table;
 mod tiles;
 
-use crate::arguments::Bench;
+use crate::arguments::{Bench, Rows};
 use crate::input;
 use crate::progress::Progress;
 use crate::say;
 use anyhow::Result;
 use covmap_explore::Config;
+pub(crate) use growth::Point;
 use std::process::ExitCode;
 use table::Table;
 
@@ -75,17 +77,37 @@ pub(crate) fn run(arguments: &Bench) -> Result<ExitCode> {
     let extent = if arguments.quick { QUICK } else { FULL };
     let progress = Progress::new(false);
     let bench = Measuring { config: &config, extent, progress: &progress };
+    if let Some(folder) = &arguments.growth {
+        growth::run(&bench, arguments.quick, folder)?;
+        progress.finish();
+        return Ok(ExitCode::SUCCESS);
+    }
+    let wanted = |rows| arguments.only.is_none_or(|only| only == rows);
     let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build()?;
+    if let Some(point) = arguments.point {
+        one_core.install(|| growth::point(&config, point))?;
+        return Ok(ExitCode::SUCCESS);
+    }
     let mut table = one_core.install(|| -> Result<Table> {
         let mut table = Table::default();
-        decisions::small(&bench, &mut table)?;
-        decisions::large(&bench, &mut table)?;
-        integrating::compare(&bench, &mut table)?;
-        fields::compare(&bench, &mut table)?;
-        firing::compare(&bench, &mut table)?;
+        if wanted(Rows::Decisions) {
+            decisions::small(&bench, &mut table)?;
+            decisions::large(&bench, &mut table)?;
+        }
+        if wanted(Rows::Integrating) {
+            integrating::compare(&bench, &mut table)?;
+        }
+        if wanted(Rows::Fields) {
+            fields::compare(&bench, &mut table)?;
+        }
+        if wanted(Rows::Firing) {
+            firing::compare(&bench, &mut table)?;
+        }
         Ok(table)
     })?;
-    decisions::office(&bench, &mut table)?;
+    if wanted(Rows::Decisions) {
+        decisions::office(&bench, &mut table)?;
+    }
     progress.finish();
     say::line(table);
     Ok(ExitCode::SUCCESS)

@@ -89,10 +89,16 @@ fn entries(file: &FitFile, config: &Config, training: &[Example]) -> Vec<Entry> 
         });
         Entry { name, method: with(Update::Coverage), axes: axes.collect() }
     };
+    let read_with_a_prior = |entry: Entry| {
+        let update = Update::CoverageWithPrior(0.5);
+        let axes = update.axes().into_iter().chain(entry.axes).collect();
+        Entry { name: "coverage, all free, prior", method: with(update), axes }
+    };
     let baseline = |name, update: Update| Entry { name, axes: update.axes(), method: with(update) };
     let constant = |name, method| Entry { name, method, axes: Vec::new() };
     vec![
         coverage("coverage, all free", &|_| true),
+        read_with_a_prior(coverage("coverage, all free", &|_| true)),
         coverage("coverage, γ and σ", &|axis| PAPER.contains(&axis.parameter)),
         coverage("coverage, unfitted", &|_| false),
         baseline("log-odds", Update::LogOdds(LogOdds::default())),

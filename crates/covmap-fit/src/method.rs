@@ -63,6 +63,10 @@ pub enum Update {
     BetaCounting(BetaCounting),
     /// The forward update of confidence-rich mapping \[Agha-mohammadi et al. 2019\].
     Crm(Crm),
+    /// The coverage map, read with a prior that is not uniform: this share of it is, and the
+    /// rest is coverage 0. Building a map needs the uniform one, Eq. (6), but where most of the
+    /// world is free, whoever reads it may know.
+    CoverageWithPrior(f64),
     /// No reading counts: all mass at this coverage, or, if it is between two bins, divided
     /// among them such that it is the mean.
     Constant(f64),
@@ -102,6 +106,7 @@ impl Method {
             Update::LogOdds(odds) => drop(odds.parameters()?),
             Update::BetaCounting(beta) => beta.validate()?,
             Update::Crm(crm) => crm.validate()?,
+            Update::CoverageWithPrior(share) => ModelError::within("prior", *share, 1e-3, 1.0)?,
             Update::Constant(value) => ModelError::within("constant", *value, 0.0, 1.0)?,
         }
         SensorModel::new(&self.model, &example.ring, example.grid.resolution())
@@ -129,6 +134,14 @@ impl Method {
             Update::Coverage => {
                 let map = example.map_of(&model)?;
                 cells.map(|cell| of_map(&map, cell)).collect()
+            }
+            &Update::CoverageWithPrior(share) => {
+                let map = example.map_of(&model)?;
+                let read = |cell| match of_map(&map, cell) {
+                    posterior if map.is_known(cell) => with_prior(posterior, share),
+                    uniform => uniform,
+                };
+                cells.map(read).collect()
             }
             Update::Crm(crm) => {
                 let map = crm.map(&model, example.grid, &example.scans)?;
@@ -158,6 +171,22 @@ impl Method {
     ) -> Result<Vec<Vec<Vec<f64>>>, ModelError> {
         examples.par_iter().map(|example| self.posteriors(example)).collect()
     }
+}
+
+/// The prior probability of a bin: `share` is uniform over the bins, the rest is coverage 0.
+fn prior_probability(share: f64, bin: usize, bins: usize) -> f64 {
+    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
+    let even = share / bins as f64;
+    if bin == 0 { 1.0 - share + even } else { even }
+}
+
+/// A posterior that had a uniform prior, as it would be with that of [`prior_probability`].
+fn with_prior(mut posterior: Vec<f64>, share: f64) -> Vec<f64> {
+    let bins = posterior.len();
+    posterior.iter_mut().enumerate().for_each(|(b, p)| *p *= prior_probability(share, b, bins));
+    let sum: f64 = posterior.iter().sum();
+    posterior.iter_mut().for_each(|p| *p /= sum);
+    posterior
 }
 
 /// A coverage as a distribution with that mean, on the two nearest of `levels` evenly spaced

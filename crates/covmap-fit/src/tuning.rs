@@ -41,7 +41,7 @@ pub enum MethodParameter {
     Outlier,
     /// [`crate::Crm::lost`].
     Lost,
-    /// [`crate::Crm::prior`].
+    /// [`crate::Crm::prior`], or that of [`Update::CoverageWithPrior`].
     Prior,
     /// [`crate::Crm::spread`].
     Spread,
@@ -66,6 +66,7 @@ impl MethodParameter {
             (Self::Outlier, Update::Crm(crm)) => Some(&mut crm.outlier),
             (Self::Lost, Update::Crm(crm)) => Some(&mut crm.lost),
             (Self::Prior, Update::Crm(crm)) => Some(&mut crm.prior),
+            (Self::Prior, Update::CoverageWithPrior(prior)) => Some(prior),
             (Self::Spread, Update::Crm(crm)) => Some(&mut crm.spread),
             _ => None,
         }
@@ -94,12 +95,15 @@ impl MethodParameter {
 
 impl Update {
     /// The axes of a baseline: all its own parameters, and those of the footprint that the
-    /// coverage map's fit moves as well, in the same intervals. None for the coverage map,
-    /// whose axes stand in the file of its fit, and for a constant.
+    /// coverage map's fit moves as well, in the same intervals. None for the coverage map
+    /// but its prior, since its axes stand in the file of its fit, and for a constant.
     pub fn axes(&self) -> Vec<Axis<MethodParameter>> {
         use MethodParameter as P;
         let own: &[(P, f64, f64)] = match self {
             Self::Coverage | Self::Constant(_) => return Vec::new(),
+            Self::CoverageWithPrior(_) => {
+                return vec![Axis { parameter: P::Prior, from: 0.01, to: 1.0 }];
+            }
             Self::LogOdds(_) => &[
                 (P::Hit, 0.5, 0.99),
                 (P::Miss, 0.05, 0.5),

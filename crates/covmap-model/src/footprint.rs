@@ -9,6 +9,9 @@ use std::f64::consts::TAU;
 /// Bearings closer than this to the border of a sector lie on it [rad].
 const BORDER: f64 = 1e-9;
 
+/// So many cells of a row are looked at side by side.
+const WIDE: usize = 8;
+
 /// Which cells belong to a beam.
 ///
 /// Choice: Eq. (9) has no angle term, so a beam covers all cells within an angle.
@@ -81,6 +84,12 @@ fn direction(angle: f64) -> Vector2<f64> {
     Vector2::new(cos, sin)
 }
 
+/// The length of a vector: `norm`, whose square root no compiler can do side by side.
+#[inline(always)]
+fn length(v: Vector2<f64>) -> f64 {
+    v.norm_squared().sqrt()
+}
+
 impl Footprint {
     /// The footprints of a ring's beams.
     ///
@@ -127,6 +136,7 @@ impl Footprint {
     ///
     /// # Panics
     /// If there is no such beam.
+    #[inline(always)]
     pub fn for_each_cell(
         &self,
         grid: &Grid,
@@ -140,19 +150,41 @@ impl Footprint {
         if !(low.iter().chain(high.iter()).all(|v| v.is_finite()) && reach >= 0.0) {
             return;
         }
-        let (first, last) = (grid.unbounded_cell_at(low), grid.unbounded_cell_at(high));
-        let side = |n: usize| i32::try_from(n).unwrap_or(i32::MAX) - 1;
-        for y in first.y.max(0)..=last.y.min(side(grid.height())) {
-            let (left, right) = sector.row_interval(grid, y, low.x, high.x);
-            let columns = |x: f64| grid.unbounded_cell_at(Point2::new(x, low.y)).x;
-            for x in columns(left).max(0)..=columns(right).min(side(grid.width())) {
-                let cell = Cell::new(x, y);
-                if let Some(cell_distance) = sector.covers(grid, cell, reach) {
-                    visit(FootprintCell { cell, cell_distance });
+        let (first, last) = inside(grid, low, high);
+        let rows = Rows::new(&sector, grid, low.x, high.x);
+        for y in first.y..=last.y {
+            let Some((left, right)) = rows.columns(grid, y) else { continue };
+            let (left, right) = (left.max(first.x), right.min(last.x));
+            for x in (left..=right).step_by(WIDE) {
+                let distances = sector.covered(grid, Cell::new(x, y), reach);
+                for (cell_x, cell_distance) in (x..=right).zip(distances) {
+                    if cell_distance >= 0.0 {
+                        visit(FootprintCell { cell: Cell::new(cell_x, y), cell_distance });
+                    }
                 }
             }
         }
     }
+
+    /// The first and the last cell of a rectangle of the grid that holds all footprints.
+    /// It is empty, the last before the first, if the pose is not finite.
+    pub(crate) fn extent(&self, grid: &Grid, pose: &Isometry2<f64>, reach: f64) -> (Cell, Cell) {
+        let from_center = |sector: &Sector| sector.sensor.coords.norm();
+        let radius = self.sectors.iter().map(from_center).fold(0.0, f64::max) + reach;
+        let (center, margin) = (Point2::from(pose.translation.vector), Vector2::repeat(radius));
+        if !radius.is_finite() || !center.iter().all(|v| v.is_finite()) {
+            return (Cell::new(0, 0), Cell::new(-1, -1));
+        }
+        inside(grid, center - margin, center + margin)
+    }
+}
+
+/// The cells of a grid in a box: the first and the last.
+fn inside(grid: &Grid, low: Point2<f64>, high: Point2<f64>) -> (Cell, Cell) {
+    let (low, high) = (grid.unbounded_cell_at(low), grid.unbounded_cell_at(high));
+    let side = |n: usize| i32::try_from(n).unwrap_or(i32::MAX) - 1;
+    let last = Cell::new(high.x.min(side(grid.width())), high.y.min(side(grid.height())));
+    (Cell::new(low.x.max(0), low.y.max(0)), last)
 }
 
 /// The angles to the right and to the left of each axis: half of the way to the next axis,
@@ -210,51 +242,42 @@ impl Sector {
         (low, high)
     }
 
-    /// An interval of x that holds all cells of row `y` that the sector may cover: that of
-    /// its borders and axis within the row, one cell wider on both sides.
-    fn row_interval(&self, grid: &Grid, y: i32, low: f64, high: f64) -> (f64, f64) {
-        let r = grid.resolution();
-        let bottom = grid.lower_corner(Cell::new(0, y)).y - r;
-        let top = bottom + 3.0 * r;
-        let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
-        let mut include = |x: f64| (left, right) = (left.min(x), right.max(x));
-        let origins = [(self.apex, self.first), (self.apex, self.last), (self.sensor, self.axis)];
-        for (origin, direction) in origins {
-            if (bottom..=top).contains(&origin.y) {
-                include(origin.x);
-            }
-            for edge in [bottom, top] {
-                let along = (edge - origin.y) / direction.y;
-                if along >= 0.0 {
-                    include(origin.x + along * direction.x);
-                }
+    /// The distances from the sensor of a cell and the next ones of its row; −1 for a cell
+    /// that the beam does not cover.
+    #[inline(always)]
+    fn covered(&self, grid: &Grid, cell: Cell, reach: f64) -> [f64; WIDE] {
+        let y = grid.center(cell).y;
+        let (mut centers, mut distances) = ([0.0; WIDE], [0.0; WIDE]);
+        for (dx, x) in (0..).zip(&mut centers) {
+            *x = grid.center(cell.offset(dx, 0)).x;
+        }
+        for (x, d) in centers.iter().zip(&mut distances) {
+            let from_sensor = Vector2::new(*x, y) - self.sensor.coords;
+            let from_apex = Vector2::new(*x, y) - self.apex.coords;
+            let distance = length(from_sensor);
+            let border = BORDER * (from_apex.x.abs() + from_apex.y.abs());
+            let covered = (from_sensor.dot(&self.axis) > 0.0)
+                & (distance <= reach)
+                & (self.first.perp(&from_apex) >= -border)
+                & (from_apex.perp(&self.last) > border);
+            *d = if covered { distance } else { -1.0 };
+        }
+        if self.with_axis {
+            for (dx, d) in (0..).zip(&mut distances) {
+                *d = d.max(self.distance_along_axis(grid, cell.offset(dx, 0), reach));
             }
         }
-        // A row that a border does not leave on one side is open to the end of the box.
-        let centre = 0.5 * (bottom + top);
-        let inside = |x: f64| self.holds_bearing(Point2::new(x, centre) - self.apex);
-        let left = if inside(low) || left.is_infinite() { low } else { left.max(low) };
-        let right = if inside(high) || right.is_infinite() { high } else { right.min(high) };
-        (left - r, right + r)
+        distances
     }
 
-    fn holds_bearing(&self, offset: Vector2<f64>) -> bool {
-        let border = BORDER * offset.norm();
-        self.first.perp(&offset) >= -border && offset.perp(&self.last) > border
-    }
-
-    /// The cell's distance from the sensor, if the beam covers it.
-    fn covers(&self, grid: &Grid, cell: Cell, reach: f64) -> Option<f64> {
-        let center = grid.center(cell);
-        let from_sensor = center - self.sensor;
-        let distance = from_sensor.norm();
-        let in_front = from_sensor.dot(&self.axis) > 0.0;
-        let covered = in_front
-            && distance <= reach
-            && (self.holds_bearing(center - self.apex)
-                || self.with_axis
-                    && self.axis_crosses(grid.lower_corner(cell), grid.resolution(), reach));
-        covered.then_some(distance)
+    /// The distance from the sensor of a cell that the axis traverses; −1 for another.
+    fn distance_along_axis(&self, grid: &Grid, cell: Cell, reach: f64) -> f64 {
+        let from_sensor = grid.center(cell) - self.sensor;
+        let distance = length(from_sensor);
+        let in_reach = from_sensor.dot(&self.axis) > 0.0 && distance <= reach;
+        let covered =
+            in_reach && self.axis_crosses(grid.lower_corner(cell), grid.resolution(), reach);
+        if covered { distance } else { -1.0 }
     }
 
     /// Whether the axis, from the sensor to `reach`, passes through the square of side `r`
@@ -274,6 +297,64 @@ impl Sector {
             }
         }
         enter < leave
+    }
+}
+
+/// Where the rows of a grid cross a sector.
+struct Rows<'a> {
+    sector: &'a Sector,
+    /// Of the lines that bound the sector: a point, dx/dy, and whether they lead upwards.
+    lines: [(Point2<f64>, f64, bool); 3],
+    /// How many of them: the axis matters only where it adds cells.
+    count: usize,
+    /// The sector's box.
+    low: f64,
+    high: f64,
+    /// Half of the height of a row, as far as it matters.
+    half: f64,
+}
+
+impl<'a> Rows<'a> {
+    fn new(sector: &'a Sector, grid: &Grid, low: f64, high: f64) -> Self {
+        let line = |(from, to): (Point2<f64>, Vector2<f64>)| (from, to.x / to.y, to.y >= 0.0);
+        let (apex, sensor) = (sector.apex, sector.sensor);
+        let lines = [(apex, sector.first), (apex, sector.last), (sensor, sector.axis)].map(line);
+        // A cell's centre decides, or all of the cell; and the border has some width.
+        let half = if sector.with_axis { 1.5 } else { 0.01 } * grid.resolution();
+        let count = if sector.with_axis { 3 } else { 2 };
+        Self { sector, lines, count, low, high, half }
+    }
+
+    /// The first and the last column that the sector may cover in row `y`: those of its
+    /// borders and axis within the row.
+    #[inline(always)]
+    fn columns(&self, grid: &Grid, y: i32) -> Option<(i32, i32)> {
+        let center = grid.center(Cell::new(0, y)).y;
+        let (mut left, mut right) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut include = |x: f64| (left, right) = (left.min(x), right.max(x));
+        for (from, slope, upwards) in &self.lines[..self.count] {
+            for edge in [center - self.half, center + self.half] {
+                let height = edge - from.y;
+                if (height >= 0.0) == *upwards {
+                    include(from.x + height * slope);
+                }
+            }
+            if (from.y - center).abs() <= self.half {
+                include(from.x);
+            }
+        }
+        // A row that a border does not leave on one side is open to the end of the box.
+        let inside = |x: f64| {
+            let offset = Point2::new(x, center) - self.sector.apex;
+            let border = -self.half;
+            self.sector.first.perp(&offset) >= border && offset.perp(&self.sector.last) >= border
+        };
+        left = if inside(self.low) { self.low } else { left.max(self.low) };
+        right = if inside(self.high) { self.high } else { right.min(self.high) };
+        // Rounds up outside of the grid, where no cell is lost by it.
+        #[allow(clippy::cast_possible_truncation, reason = "saturates outside of any grid")]
+        let column = |x: f64| ((x - grid.lower_left().x) / grid.resolution()) as i32;
+        (left <= right).then(|| (column(left - self.half), column(right + self.half)))
     }
 }
 
@@ -412,7 +493,8 @@ mod tests {
             let (grid, pose) = (grid(50), Isometry2::new(Vector2::new(x, y), heading));
             let sector = footprint.sectors[beam].moved(&pose);
             let all: Vec<FootprintCell> = grid.cells().filter_map(|cell| {
-                sector.covers(&grid, cell, reach).map(|cell_distance| FootprintCell { cell, cell_distance })
+                let cell_distance = sector.covered(&grid, cell, reach)[0];
+                (cell_distance >= 0.0).then_some(FootprintCell { cell, cell_distance })
             }).collect();
             prop_assert_eq!(covered(&footprint, &grid, &pose, beam, reach), all);
         }

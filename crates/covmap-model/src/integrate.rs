@@ -1,4 +1,9 @@
-//! Eq. (1)–(8): multiplying a measurement into the map.
+//! Eq. (1)–(8): multiplying a measurement into the map, as printed; [`fast`] is what runs.
+
+mod evidence;
+mod fast;
+
+pub use fast::integrate;
 
 use crate::{Outcome, SensorModel};
 use covmap::{Cell, Change, CoverageMap, Grid, MAX_BINS};
@@ -28,12 +33,12 @@ impl SensorModel {
     }
 }
 
-/// Integrates a scan into a map, Eq. (8): the posterior of every covered cell is multiplied
-/// by p(c_l | d) of Eq. (9). Returns what changed, in row-major order, each cell once.
+/// Integrates a scan into a map, Eq. (8), as printed, cell by cell in f64: what [`integrate`]
+/// is tested against. Returns what changed, in row-major order, each cell once.
 ///
 /// # Panics
-/// If the model does not fit the map ([`SensorModel::fits`]), or the scan not the ring.
-pub fn integrate(model: &SensorModel, map: &mut CoverageMap, scan: &Scan) -> Vec<Change> {
+/// As [`integrate`].
+pub fn integrate_literally(model: &SensorModel, map: &mut CoverageMap, scan: &Scan) -> Vec<Change> {
     assert!(model.fits(map), "the model is for other bins or another resolution");
     let grid = *map.grid();
     let mut evidence = [0.0; MAX_BINS];

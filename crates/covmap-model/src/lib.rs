@@ -33,7 +33,9 @@ mod scan_counts;
 mod sensor_model;
 
 pub use footprint::{Footprint, FootprintCell, FootprintError, FootprintRule};
-pub use integrate::{cells_under_body, integrate, integrate_body, intercepted};
+pub use integrate::{
+    cells_under_body, integrate, integrate_body, integrate_literally, intercepted,
+};
 pub use occupancy::{OccupancyGrid, OccupancyParameters};
 pub use parameters::{Linear, ModelError, ModelParameters, NoEchoParameters};
 pub use scan_counts::{Counting, ScanCounts};

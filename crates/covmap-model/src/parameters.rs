@@ -24,7 +24,13 @@ pub struct Linear {
 }
 
 impl Linear {
+    /// The function that is the same everywhere.
+    pub(crate) fn constant(base: f64) -> Self {
+        Self { base, per_cell_distance: 0.0, per_range: 0.0 }
+    }
+
     /// The value for a cell at `cell_distance` \[m\] and a measured `range` \[m\].
+    #[inline(always)]
     pub fn at(&self, cell_distance: f64, range: f64) -> f64 {
         self.base + self.per_cell_distance * cell_distance + self.per_range * range
     }

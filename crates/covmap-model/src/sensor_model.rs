@@ -1,6 +1,6 @@
 //! Eq. (9) and (10): what one reading says about one cell.
 
-use crate::{Footprint, ModelError, ModelParameters};
+use crate::{Footprint, Linear, ModelError, ModelParameters};
 use covmap::{CoverageMap, Histogram, bin_coverage};
 use covmap_sonar::{Range, SonarRing};
 use std::f64::consts::PI;
@@ -16,6 +16,16 @@ pub enum Outcome {
     NoEcho,
 }
 
+/// What Eq. (9) needs to know of a reading.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reading {
+    /// Where the beam ended \[m\]; infinite if it passed all cells that it says something of.
+    end: f64,
+    /// d of σ(d^l, d) and γ(d^l, d) \[m\].
+    range: f64,
+    gamma: Linear,
+}
+
 /// The sensor model: for every cell and every reading a distribution over coverages.
 ///
 /// Valid by construction: the constraints of section 3 hold for every instance.
@@ -24,6 +34,8 @@ pub struct SensorModel {
     parameters: ModelParameters,
     resolution: f64,
     footprint: Footprint,
+    /// What kind of vector registers scans are integrated with.
+    registers: pulp::Arch,
 }
 
 impl SensorModel {
@@ -40,7 +52,8 @@ impl SensorModel {
         parameters.validate()?;
         ModelError::within("resolution", resolution, 1e-3, 10.0)?;
         let footprint = Footprint::new(ring, &parameters.footprint)?;
-        Ok(Self { parameters: parameters.clone(), resolution, footprint })
+        let registers = registers();
+        Ok(Self { parameters: parameters.clone(), resolution, footprint, registers })
     }
 
     /// The parameters.
@@ -51,6 +64,10 @@ impl SensorModel {
     /// The side of a cell, r \[m\].
     pub fn resolution(&self) -> f64 {
         self.resolution
+    }
+
+    pub(crate) fn registers(&self) -> pulp::Arch {
+        self.registers
     }
 
     /// Which cells each beam covers.
@@ -106,6 +123,28 @@ impl SensorModel {
         (0.5 + delta / self.resolution).clamp(0.0, 1.0)
     }
 
+    /// What an outcome says, for all cells.
+    pub(crate) fn reading(&self, outcome: Outcome) -> Reading {
+        let p = &self.parameters;
+        let passed = |range, gamma| Reading { end: f64::INFINITY, range, gamma };
+        match outcome {
+            Outcome::Echo(d) => Reading { end: d, range: d, gamma: p.gamma },
+            Outcome::Beyond(_) => passed(p.usable_range, p.gamma),
+            Outcome::NoEcho => passed(p.no_echo.range, Linear::constant(p.no_echo.gamma)),
+        }
+    }
+
+    /// μ, σ and γ of Eq. (9) for a cell at `cell_distance` \[m\].
+    #[inline(always)]
+    pub(crate) fn terms(&self, reading: &Reading, cell_distance: f64) -> (f64, f64, f64) {
+        let p = &self.parameters;
+        let delta = cell_distance - reading.end;
+        let inside = delta.abs() <= 0.5 * self.resolution;
+        let sigma_out = p.sigma_out.at(cell_distance, reading.range);
+        let sigma = if inside { p.sigma_in } else { sigma_out };
+        (self.mu(delta), sigma, reading.gamma.at(cell_distance, reading.range))
+    }
+
     /// Evaluates p(c_l = x | d), Eq. (9), at the coverage x of every bin:
     ///
     /// ```text
@@ -120,21 +159,7 @@ impl SensorModel {
     pub fn evidence(&self, cell_distance: f64, outcome: Outcome, out: &mut [f64]) {
         let p = &self.parameters;
         assert_eq!(out.len(), p.bins, "one place for each bin");
-        let (mu, sigma, gamma) = match outcome {
-            Outcome::Echo(d) => {
-                let delta = cell_distance - d;
-                let inside = delta.abs() <= 0.5 * self.resolution;
-                let sigma = if inside { p.sigma_in } else { p.sigma_out.at(cell_distance, d) };
-                (self.mu(delta), sigma, p.gamma.at(cell_distance, d))
-            }
-            Outcome::Beyond(_) => {
-                let d = p.usable_range;
-                (0.0, p.sigma_out.at(cell_distance, d), p.gamma.at(cell_distance, d))
-            }
-            Outcome::NoEcho => {
-                (0.0, p.sigma_out.at(cell_distance, p.no_echo.range), p.no_echo.gamma)
-            }
-        };
+        let (mu, sigma, gamma) = self.terms(&self.reading(outcome), cell_distance);
         // exp ∘ log is four times as fast as libm's pow, which would be most of integrating.
         let tempered = |density: f64| match p.tempering {
             exponent if exponent < 1.0 => libm::exp(exponent * libm::log(density)),
@@ -161,6 +186,15 @@ impl SensorModel {
     }
 }
 
+/// Registers of 256 bits where there are any: integrating takes a fifth longer with wider ones.
+fn registers() -> pulp::Arch {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(registers) = pulp::x86::V3::try_new() {
+        return pulp::Arch::V3(registers);
+    }
+    pulp::Arch::new()
+}
+
 /// The density of a Gaussian, N(μ, σ, x) = exp(−z²/2) / (σ·√(2π)) with z = (x − μ)/σ.
 fn normal(z: f64, sigma: f64) -> f64 {
     libm::exp(-0.5 * z * z) / (sigma * (2.0 * PI).sqrt())
@@ -170,7 +204,6 @@ fn normal(z: f64, sigma: f64) -> f64 {
 #[allow(clippy::float_cmp, reason = "tests compare exact values")]
 mod tests {
     use super::*;
-    use crate::Linear;
     use proptest::prelude::*;
 
     fn model() -> SensorModel {

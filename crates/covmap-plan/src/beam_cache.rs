@@ -1,77 +1,66 @@
 //! What each beam of each view-point sees and gains, kept until a scan changes it.
 
-use crate::cells::{Cells, Offsets};
-use crate::gain::fast::{FastGain, Scratch};
-use crate::{BeamStencil, PlannerParameters, RangeLikelihood, Stencil, range_likelihood};
-use covmap::{Cell, Grid};
+use crate::cells::Cells;
+use crate::gain::lanes::{LANES, Lanes};
+use crate::gain::sweep::{Row, Sides, Sweep, Unit};
+use crate::look_ahead::{Ahead, Cone};
+use crate::onlookers::{Mark, Onlookers};
+use crate::view_points::{ViewPoints, groups, place};
+use crate::{PlannerParameters, Stencil};
+use covmap::Grid;
 use covmap_model::SensorModel;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-/// The beam must be ray-traced again.
-const SIGHT: u8 = 1;
-/// The beam's gain must be computed again.
-const GAIN: u8 = 2;
-/// A cell that is a reason to measure is in the beam's sight.
-const REASON: u8 = 4;
-/// The upper bound of the beam's gain must be computed again.
-const BOUND: u8 = 8;
-/// Whether a reason is in the beam's sight must be looked up again.
-const LIMIT: u8 = 16;
-/// The upper bound of the beam's gain holds, but a new one may be lower.
-const LOOSE: u8 = 32;
+/// So many beams of groups are evaluated at once, at most: bounds the memory.
+const PORTION: usize = 1 << 17;
 
-/// View-points that one thread takes at a time.
-const PART: usize = 64;
-
-/// How far the values of view-points are brought up to date.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Upto {
-    /// V(l) only.
-    Sight,
-    /// V(l), and an upper bound of E\[I\] at least.
-    Bound,
-    /// V(l) and E\[I\].
-    Gain,
+/// One beam of a group of view-points: which of them are up to date, bit by bit.
+#[derive(Debug, Clone, Copy, Default)]
+struct State {
+    /// V(l) is.
+    sight: u16,
+    /// Whether there is a reason to measure in sight is.
+    reason: u16,
+    /// E\[I\] is.
+    gain: u16,
+    /// There is a reason to measure in sight.
+    has_reason: u16,
+    /// The values depend on the first so many cells of the beam.
+    horizon: u16,
 }
 
-impl Upto {
-    fn flags(self) -> u8 {
-        match self {
-            Upto::Sight => SIGHT | LIMIT,
-            Upto::Bound => SIGHT | LIMIT | BOUND,
-            Upto::Gain => SIGHT | LIMIT | GAIN,
-        }
-    }
-}
-
-/// A beam from which a cell can be seen: the view-point's place from the cell, and the
-/// cell's rank in the beam's order of distance.
-#[derive(Debug, Clone, Copy)]
-struct Onlooker {
-    dx: i32,
-    dy: i32,
-    beam: u32,
-    rank: u16,
+/// What is known of a group of view-points over all beams, bit by bit.
+#[derive(Debug, Clone, Copy, Default)]
+struct Group {
+    /// Sight and reasons of all beams are up to date.
+    sight: u16,
+    /// The gains of all beams are up to date.
+    gain: u16,
+    /// There is a reason to measure in sight of some beam.
+    has_reason: u16,
 }
 
 /// Cached values for every (view-point, beam).
 ///
 /// A value depends on the first `horizon` cells of its beam only; when one of these changes
-/// the value is marked, and computed again when it is next asked for.
+/// the value is stale, and computed again when it is next asked for.
 #[derive(Debug, Clone)]
 pub(crate) struct BeamCache {
     grid: Grid,
-    stencil: Stencil,
-    offsets: Vec<Offsets>,
-    uniform_share: f64,
-    fast: FastGain,
-    onlookers: Vec<Onlooker>,
+    cones: Vec<Cone>,
+    sweep: Sweep,
+    onlookers: Onlookers,
+    groups: Vec<Group>,
+    /// E\[I(l)\], by group.
+    mean: Vec<[f64; LANES]>,
+    /// For each group for each beam.
+    states: Vec<State>,
     /// How many cells of the beam are in sight: V(l) beam by beam.
-    in_sight: Vec<u16>,
-    horizon: Vec<u16>,
-    flags: Vec<u8>,
-    /// E\[I\] of the beam; an upper bound of it while that is marked.
-    gain: Vec<f64>,
+    in_sight: Vec<[u16; LANES]>,
+    gain: Vec<Lanes>,
+    /// Which vector registers are used; all give the same bits.
+    arch: Arch,
 }
 
 impl BeamCache {
@@ -82,144 +71,149 @@ impl BeamCache {
         grid: Grid,
         parameters: &PlannerParameters,
     ) -> Self {
-        let slots = grid.len() * stencil.beams.len();
+        let count = grid.height() * groups(&grid);
+        let units = count * stencil.beams.len();
+        let cone = |beam| Cone::new(beam, cells, parameters.uniform_share);
         Self {
             grid,
-            stencil: stencil.clone(),
-            offsets: cells.offsets(stencil),
-            uniform_share: parameters.uniform_share,
-            fast: FastGain::new(model, stencil),
-            onlookers: onlookers(stencil),
-            in_sight: vec![0; slots],
-            horizon: vec![u16::MAX; slots],
-            flags: vec![SIGHT | GAIN | BOUND; slots],
-            gain: vec![0.0; slots],
+            cones: stencil.beams.iter().map(cone).collect(),
+            sweep: Sweep::new(model, stencil, grid),
+            onlookers: Onlookers::new(stencil, grid),
+            groups: vec![Group::default(); count],
+            mean: vec![[0.0; LANES]; count],
+            states: vec![State::default(); units],
+            in_sight: vec![[0; LANES]; units],
+            gain: vec![[0.0; LANES]; units],
+            arch: Arch::new(),
         }
     }
 
-    /// Marks the gains that depend on a cell whose entropy rose by `rise` \[nats\], or fell.
-    ///
-    /// An upper bound of a gain goes up by no more than that.
-    pub(crate) fn mark_gains(&mut self, cell: Cell, rise: f64) {
-        let Self { flags, gain, .. } = self;
-        let mark = |slot: usize| {
-            if flags[slot] & (GAIN | BOUND) == GAIN {
-                gain[slot] += rise;
-                flags[slot] |= LOOSE;
-            } else {
-                flags[slot] |= GAIN | BOUND;
-            }
-        };
-        for_each_onlooker(&self.onlookers, &self.grid, &self.stencil, &self.horizon, cell, mark);
-    }
-
-    /// Marks all that depends on what a cell reflects and whether it can change.
-    pub(crate) fn mark_sights(&mut self, cell: Cell) {
-        self.mark_flags(cell, SIGHT | GAIN | BOUND);
-    }
-
-    /// Marks what depends on the distance up to which a cell is a reason to measure.
-    pub(crate) fn mark_limit(&mut self, cell: Cell) {
-        self.mark_flags(cell, LIMIT);
-    }
-
-    fn mark_flags(&mut self, cell: Cell, mask: u8) {
-        let flags = &mut self.flags;
-        let mark = |slot: usize| flags[slot] |= mask;
-        for_each_onlooker(&self.onlookers, &self.grid, &self.stencil, &self.horizon, cell, mark);
+    /// Takes note of a change of a cell, by its row-major index.
+    pub(crate) fn mark(&mut self, index: usize, mark: Mark) {
+        self.onlookers.mark(index, mark);
     }
 
     /// Marks the gains of a view-point, whatever changed.
     pub(crate) fn forget_gain(&mut self, view_point: usize) {
-        let slots = self.slots(view_point);
-        self.flags[slots].iter_mut().for_each(|flags| *flags |= GAIN | BOUND);
+        let (group, _) = place(self.grid.width(), view_point);
+        let beams = self.cones.len();
+        self.groups[group].gain = 0;
+        self.states[group * beams..(group + 1) * beams].iter_mut().for_each(|s| s.gain = 0);
     }
 
-    /// Brings the values of view-points up to date.
-    ///
-    /// `least` tells for each view-point the gain that it needs to matter: infinite where
-    /// nothing is wanted. Where the beams evaluated so far show that a view-point stays below,
-    /// the rest of its beams keep their bounds.
-    pub(crate) fn refresh(&mut self, cells: &Cells, least: &[f64], upto: Upto) {
-        let beams = self.stencil.beams.len();
-        let (stencil, offsets, fast) = (&self.stencil, &self.offsets, &self.fast);
-        let view_points = self
-            .flags
-            .par_chunks_mut(beams)
-            .zip(self.in_sight.par_chunks_mut(beams))
-            .zip(self.horizon.par_chunks_mut(beams))
-            .zip(self.gain.par_chunks_mut(beams))
-            .enumerate()
-            // Wanted view-points lie close together: small parts share them out.
-            .with_max_len(PART);
-        let uniform_share = self.uniform_share;
-        view_points.for_each_init(
-            Scratch::default,
-            |scratch, (view_point, (((flags, in_sight), horizon), gain))| {
-                let least = least[view_point];
-                let wanted = least < f64::INFINITY && flags.iter().any(|f| f & upto.flags() != 0);
-                if !wanted {
-                    return;
+    fn take_marks(&mut self) {
+        let Self { onlookers, groups, states, cones, .. } = self;
+        onlookers.tell(|mark, group, beam, rank| {
+            let state = &mut states[group * cones.len() + beam];
+            if rank >= state.horizon {
+                return;
+            }
+            match mark {
+                Mark::Sight => {
+                    (state.sight, state.reason, state.gain) = (0, 0, 0);
+                    (groups[group].sight, groups[group].gain) = (0, 0);
                 }
-                if upto == Upto::Gain {
-                    for beam in 0..beams {
-                        if flags[beam] & (LOOSE | SIGHT) != LOOSE {
-                            continue;
-                        }
-                        let look = Look { cells, offsets: &offsets[beam], view_point };
-                        look.ahead(&stencil.beams[beam], uniform_share, &mut scratch.likelihood);
-                        gain[beam] = look.gain_bound(&stencil.beams[beam], &scratch.likelihood);
-                        flags[beam] &= !LOOSE;
-                    }
-                }
-                for (beam, cone) in stencil.beams.iter().enumerate() {
-                    if flags[beam] & upto.flags() == 0 {
-                        continue;
-                    }
-                    if upto == Upto::Gain && mean(gain) < least {
-                        return;
-                    }
-                    let look = Look { cells, offsets: &offsets[beam], view_point };
-                    let stale = flags[beam];
-                    if stale & (SIGHT | LIMIT) == LIMIT {
-                        let seen = usize::from(in_sight[beam]);
-                        flags[beam] = stale & !(LIMIT | REASON) | look.reason(seen);
-                    }
-                    if stale & upto.flags() == LIMIT {
-                        continue;
-                    }
-                    look.ahead(cone, uniform_share, &mut scratch.likelihood);
-                    if flags[beam] & SIGHT != 0 {
-                        let seen = scratch.likelihood.cells_in_sight(cone);
-                        flags[beam] = stale & !(SIGHT | LIMIT | REASON) | look.reason(seen);
-                        in_sight[beam] = rank(seen);
-                        horizon[beam] = rank(dependency(cone, &scratch.likelihood));
-                    }
-                    if upto == Upto::Gain && flags[beam] & GAIN != 0 {
-                        gain[beam] = fast.beam_gain(cells, look.offsets, beam, view_point, scratch);
-                        flags[beam] &= !(GAIN | BOUND | LOOSE);
-                    } else if upto == Upto::Bound && flags[beam] & BOUND != 0 {
-                        gain[beam] = look.gain_bound(cone, &scratch.likelihood);
-                        flags[beam] &= !(BOUND | LOOSE);
-                    }
-                }
-            },
-        );
+                Mark::Gain => (state.gain, groups[group].gain) = (0, 0),
+                Mark::Limit => (state.reason, groups[group].sight) = (0, 0),
+            }
+        });
     }
 
-    /// Whether [`Self::gain`] of a view-point is exact, and not an upper bound.
-    pub(crate) fn is_exact(&self, view_point: usize) -> bool {
-        self.slots(view_point).all(|slot| self.flags[slot] & GAIN == 0)
+    /// Brings V(l), and whether it holds a reason to measure, up to date.
+    pub(crate) fn refresh_sight(&mut self, cells: &Cells, wanted: &ViewPoints) {
+        self.take_marks();
+        let (per_row, beams) = (groups(&self.grid), self.cones.len());
+        let rows = self
+            .groups
+            .par_chunks_mut(per_row)
+            .zip(self.states.par_chunks_mut(per_row * beams))
+            .zip(self.in_sight.par_chunks_mut(per_row * beams))
+            .zip(wanted.groups().par_chunks(per_row))
+            .enumerate();
+        let (grid, cones, arch) = (&self.grid, &self.cones, self.arch);
+        rows.for_each_init(Ahead::new, |ahead, (y, (((groups, states), in_sight), wanted))| {
+            if groups.iter().zip(wanted).any(|(group, wanted)| wanted & !group.sight != 0) {
+                let here = cells.bordered(y * grid.width());
+                arch.dispatch(Sight {
+                    cones,
+                    cells,
+                    here,
+                    wanted,
+                    groups,
+                    states,
+                    in_sight,
+                    ahead,
+                });
+            }
+        });
     }
 
-    /// Whether a view-point, if it is up to date, holds a reason to measure in sight.
+    /// Brings E\[I(l)\] up to date, and V(l).
+    pub(crate) fn refresh_gain(&mut self, cells: &Cells, wanted: &ViewPoints) {
+        self.refresh_sight(cells, wanted);
+        let (per_row, beams) = (groups(&self.grid), self.cones.len());
+        let stale = |(row, wanted): (usize, &[u16])| {
+            let groups = &self.groups[row * per_row..(row + 1) * per_row];
+            groups.iter().zip(wanted).any(|(group, wanted)| wanted & !group.gain != 0)
+        };
+        let rows: Vec<(usize, &[u16])> =
+            wanted.groups().chunks(per_row).enumerate().filter(|row| stale(*row)).collect();
+        let at_once = (PORTION / (per_row * beams)).max(1);
+        for rows in rows.chunks(at_once) {
+            let look = |ahead: &mut Ahead, (y, wanted): &(usize, &[u16])| {
+                let here = cells.bordered(y * self.grid.width());
+                let states = &self.states[y * per_row * beams..(y + 1) * per_row * beams];
+                self.arch.dispatch(Likely {
+                    cones: &self.cones,
+                    cells,
+                    here,
+                    wanted,
+                    states,
+                    y: *y,
+                    ahead,
+                })
+            };
+            let mut rows: Vec<Row> = rows.par_iter().map_init(Ahead::new, look).collect();
+            self.sweep.run(self.arch, cells, &mut rows);
+            for row in rows {
+                for (unit, gains) in row.units.iter().zip(row.gains) {
+                    let group = row.y * per_row + unit.group;
+                    let at = group * beams + unit.beam;
+                    self.gain[at] = gains;
+                    self.states[at].gain |= wanted.groups()[group];
+                }
+            }
+        }
+        let averages = self
+            .mean
+            .par_iter_mut()
+            .zip(&mut self.groups)
+            .zip(self.gain.par_chunks(beams))
+            .zip(self.states.par_chunks(beams))
+            .zip(wanted.groups());
+        averages.for_each(|((((mean, group), gains), states), wanted)| {
+            if wanted & !group.gain != 0 {
+                *mean = average(gains);
+                group.gain = states.iter().fold(u16::MAX, |all, state| all & state.gain);
+            }
+        });
+    }
+
+    /// Which view-points of a group that are up to date hold a reason to measure in sight.
+    pub(crate) fn reasons(&self, group: usize) -> u16 {
+        self.groups[group].has_reason
+    }
+
+    /// Whether a view-point that is up to date holds a reason to measure in sight.
     pub(crate) fn has_reason(&self, view_point: usize) -> bool {
-        self.slots(view_point).any(|slot| self.flags[slot] & REASON != 0)
+        let (group, lane) = place(self.grid.width(), view_point);
+        self.reasons(group) >> lane & 1 == 1
     }
 
-    /// E\[I(l)\] of a view-point that is up to date, or an upper bound of it \[nats\].
+    /// E\[I(l)\] of a view-point that is up to date \[nats\].
     pub(crate) fn gain(&self, view_point: usize) -> f64 {
-        mean(&self.gain[self.slots(view_point)])
+        let (group, lane) = place(self.grid.width(), view_point);
+        self.mean[group][lane]
     }
 
     /// V(l) of a view-point that is up to date: cells by their row-major index, with their
@@ -245,122 +239,173 @@ impl BeamCache {
     /// The cells in sight of a view-point, beam by beam.
     fn sights(&self, view_point: usize) -> impl Iterator<Item = (usize, f32)> {
         let from = self.grid.cell(view_point);
-        let beams = self.stencil.beams.iter().zip(&self.offsets);
-        self.slots(view_point).zip(beams).flat_map(move |(slot, (cone, offsets))| {
-            let in_sight = usize::from(self.in_sight[slot]);
-            let cells = cone.cells[..in_sight].iter().zip(&offsets.distance);
-            cells.filter_map(move |(cell, distance)| {
-                Some((self.grid.index(from.offset(cell.dx, cell.dy))?, *distance))
+        let (group, lane) = place(self.grid.width(), view_point);
+        let in_sight = &self.in_sight[group * self.cones.len()..];
+        self.cones.iter().zip(in_sight).flat_map(move |(cone, in_sight)| {
+            cone.cells(in_sight[lane]).filter_map(move |(cell, distance)| {
+                Some((self.grid.index(from.offset(cell.dx, cell.dy))?, distance))
             })
         })
     }
-
-    fn slots(&self, view_point: usize) -> std::ops::Range<usize> {
-        let beams = self.stencil.beams.len();
-        view_point * beams..(view_point + 1) * beams
-    }
 }
 
-/// A beam as it looks from a view-point.
-struct Look<'a> {
+/// Looks ahead from the groups of a row whose sight or reasons are stale.
+struct Sight<'a> {
+    cones: &'a [Cone],
     cells: &'a Cells,
-    offsets: &'a Offsets,
-    view_point: usize,
+    here: usize,
+    wanted: &'a [u16],
+    groups: &'a mut [Group],
+    states: &'a mut [State],
+    in_sight: &'a mut [[u16; LANES]],
+    ahead: &'a mut Ahead,
 }
 
-impl Look<'_> {
-    fn ahead(&self, cone: &BeamStencil, uniform_share: f64, out: &mut RangeLikelihood) {
-        let here = self.cells.bordered(self.view_point);
-        let at = |i: usize| here.wrapping_add_signed(self.offsets.bordered[i]);
-        range_likelihood(cone, uniform_share, |i| self.cells.reflection(at(i)), out);
-    }
+impl WithSimd for Sight<'_> {
+    type Output = ();
 
-    /// [`REASON`] if one of the first `count` cells is a reason to measure from here.
-    fn reason(&self, count: usize) -> u8 {
-        let here = self.cells.bordered(self.view_point);
-        let cells = self.offsets.distance[..count].iter().zip(&self.offsets.bordered);
-        let is_reason = |(distance, offset): (&f32, &isize)| {
-            self.cells.is_reason(here.wrapping_add_signed(*offset), *distance)
-        };
-        if cells.into_iter().any(is_reason) { REASON } else { 0 }
-    }
-
-    /// An upper bound of the beam's E\[I\]: no outcome can take more from a cell than its
-    /// entropy, so E\[I\] ≤ Σ_i H(h(c_i)) · P(c_i is covered). One part in 10⁵ is added for
-    /// rounding.
-    fn gain_bound(&self, cone: &BeamStencil, likelihood: &RangeLikelihood) -> f64 {
-        let here = self.cells.bordered(self.view_point);
-        let entropy = |i: usize| {
-            let changeable =
-                self.cells.is_changeable(here.wrapping_add_signed(self.offsets.bordered[i]));
-            let index = || self.view_point.wrapping_add_signed(self.offsets.plain[i]);
-            if changeable { f64::from(self.cells.entropy(index())) } else { 0.0 }
-        };
-        // Sums over prefixes of the cells, outcome by outcome: their reaches grow with k.
-        let (mut bound, mut sum, mut next) = (0.0, 0.0, 0);
-        for (p, reach) in likelihood.echo.iter().zip(&cone.echo_reach) {
-            if *p > 0.0 {
-                sum += (next..*reach).map(entropy).sum::<f64>();
-                next = *reach;
-                bound += p * sum;
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { cones, cells, here, wanted, groups, states, in_sight, ahead } = self;
+        let beams = cones.len();
+        let stale = |i: &usize| wanted[*i] & !groups[*i].sight != 0;
+        let all: Vec<usize> = (0..wanted.len()).filter(stale).collect();
+        for (beam, cone) in cones.iter().enumerate() {
+            for &i in &all {
+                let (here, wanted) = (here + i * LANES, wanted[i]);
+                let (state, in_sight) =
+                    (&mut states[i * beams + beam], &mut in_sight[i * beams + beam]);
+                if wanted & !state.sight != 0 {
+                    cone.look(cells, here, ahead);
+                    *in_sight = cone.in_sight(ahead);
+                    let before = if state.sight == 0 { 0 } else { state.horizon };
+                    state.horizon = before.max(cone.dependency(ahead, wanted));
+                    state.sight |= wanted;
+                    state.reason = 0;
+                }
+                if wanted & !state.reason != 0 {
+                    state.has_reason = cone.reasons(cells, here, in_sight, state.sight);
+                    state.reason = state.sight;
+                }
             }
         }
-        if likelihood.no_echo > 0.0 {
-            bound += likelihood.no_echo * (0..cone.no_echo_reach).map(entropy).sum::<f64>();
+        for i in all {
+            let states = &states[i * beams..(i + 1) * beams];
+            groups[i].sight = states.iter().fold(u16::MAX, |all, s| all & s.sight & s.reason);
+            groups[i].has_reason = states.iter().fold(0, |any, s| any | s.has_reason);
         }
-        bound * (1.0 + 1e-5) + 1e-9
     }
 }
 
-#[allow(clippy::cast_possible_truncation, reason = "a planner refuses beams of more cells")]
-fn rank(count: usize) -> u16 {
-    count as u16
+/// Looks ahead along the beams of a row whose gains are stale.
+struct Likely<'a> {
+    cones: &'a [Cone],
+    cells: &'a Cells,
+    here: usize,
+    wanted: &'a [u16],
+    states: &'a [State],
+    y: usize,
+    ahead: &'a mut Ahead,
+}
+
+impl WithSimd for Likely<'_> {
+    type Output = Row;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Row {
+        let Self { cones, cells, here, wanted, states, y, ahead } = self;
+        let mut row = Row { y, ..Row::default() };
+        for (beam, cone) in cones.iter().enumerate() {
+            for (group, wanted) in wanted.iter().enumerate() {
+                let known = states[group * cones.len() + beam].gain;
+                if wanted & !known == 0 {
+                    continue;
+                }
+                cone.look(cells, here + group * LANES, ahead);
+                let first = row.outcomes.len();
+                ahead.likely(wanted | known, |k, p| {
+                    row.outcomes.push(k);
+                    row.probabilities.push(p);
+                });
+                row.units.push(Unit {
+                    group,
+                    beam,
+                    likely: first..row.outcomes.len(),
+                    sides: Sides::default(),
+                });
+            }
+        }
+        row
+    }
 }
 
 /// The average over the beams.
-fn mean(gains: &[f64]) -> f64 {
+fn average(gains: &[Lanes]) -> [f64; LANES] {
+    let mut sum = [0.0; LANES];
+    for gains in gains {
+        for lane in 0..LANES {
+            sum[lane] += f64::from(gains[lane]);
+        }
+    }
     #[allow(clippy::cast_precision_loss, reason = "few beams")]
     let beams = gains.len() as f64;
-    gains.iter().sum::<f64>() / beams
+    sum.map(|gain| gain / beams)
 }
 
-/// How many of a beam's cells decide its sight and its gain: those that may reflect, and
-/// those that a possible outcome covers.
-fn dependency(beam: &BeamStencil, likelihood: &RangeLikelihood) -> usize {
-    let traced = beam.rings[..likelihood.traced].iter().map(|ring| ring.end);
-    let outcomes = (0..=likelihood.echo.len()).filter(|k| likelihood.probability(*k) > 0.0);
-    traced.chain(outcomes.map(|k| beam.reach(k))).max().unwrap_or(0)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use covmap::{CoverageMap, Raster};
+    use covmap_model::{ModelParameters, integrate};
+    use covmap_sonar::{Range, Scan, SonarRing};
+    use nalgebra::{Isometry2, Point2, Vector2};
 
-/// Calls `mark` with the slot of every (view-point, beam) whose values depend on a cell.
-#[inline(always)]
-fn for_each_onlooker(
-    onlookers: &[Onlooker],
-    grid: &Grid,
-    stencil: &Stencil,
-    horizon: &[u16],
-    cell: Cell,
-    mut mark: impl FnMut(usize),
-) {
-    let beams = stencil.beams.len();
-    for onlooker in onlookers {
-        let Some(index) = grid.index(cell.offset(onlooker.dx, onlooker.dy)) else { continue };
-        let slot = index * beams + onlooker.beam as usize;
-        if onlooker.rank < horizon[slot] {
-            mark(slot);
+    /// Every kind of registers that this machine has.
+    fn kinds() -> Vec<Arch> {
+        let mut kinds = vec![Arch::Scalar];
+        #[cfg(target_arch = "x86_64")]
+        {
+            kinds.extend(pulp::x86::V3::try_new().map(Arch::V3));
+            kinds.extend(pulp::x86::V4::try_new().map(Arch::V4));
         }
+        kinds.push(Arch::new());
+        kinds
     }
-}
 
-/// All (view-point, beam) that can see a cell, in the order of the view-points.
-fn onlookers(stencil: &Stencil) -> Vec<Onlooker> {
-    let mut onlookers = Vec::new();
-    for (beam, cone) in stencil.beams.iter().enumerate() {
-        for (i, cell) in cone.cells.iter().enumerate() {
-            let beam = u32::try_from(beam).unwrap_or(u32::MAX);
-            onlookers.push(Onlooker { dx: -cell.dx, dy: -cell.dy, beam, rank: rank(i) });
+    /// All that is kept after some scans, with one kind of registers.
+    fn values(arch: Arch) -> (Vec<u64>, Vec<[u16; LANES]>, Vec<u16>) {
+        let parameters = PlannerParameters::standard();
+        let model = SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), 0.1).unwrap();
+        let grid = Grid::new(Point2::new(-2.0, -2.0), 0.1, 43, 37).unwrap();
+        let stencil = Stencil::new(&model, 0.1);
+        let mut map = CoverageMap::new(grid, 11).unwrap();
+        let mut cells = Cells::new(grid, 11, &stencil, &parameters);
+        let mut cache = BeamCache::new(&model, &stencil, &cells, grid, &parameters);
+        cache.arch = arch;
+        let all = Raster::filled(grid, ());
+        let mut wanted = ViewPoints::new(&grid);
+        (0..all.values().len()).for_each(|index| wanted.insert(index));
+        for turn in 0..4 {
+            let pose = Isometry2::new(Vector2::new(0.1 * f64::from(turn), 0.0), 0.1);
+            let range = |i| Range::Echo(0.5 + 0.07 * f64::from((i * 7 + turn) % 24));
+            let scan = Scan { pose, time: 0.0, ranges: (0..24).map(range).collect() };
+            for change in integrate(&model, &mut map, &scan) {
+                let index = grid.index(change.cell).unwrap();
+                cells.update(&map, change.cell);
+                cells.set_limit(index, 1.0);
+                cache.mark(index, Mark::Sight);
+            }
+            cache.refresh_gain(&cells, &wanted);
         }
+        let gains = (0..grid.len()).map(|index| cache.gain(index).to_bits()).collect();
+        let reasons = (0..cache.groups.len()).map(|group| cache.reasons(group)).collect();
+        (gains, cache.in_sight, reasons)
     }
-    onlookers.sort_by_key(|o| (o.dy, o.dx, o.beam));
-    onlookers
+
+    #[test]
+    fn all_vector_registers_give_the_same_bits() {
+        let all: Vec<_> = kinds().into_iter().map(values).collect();
+        assert!(all.len() > 1 && all.iter().all(|values| *values == all[0]));
+        assert!(all[0].0.iter().any(|gain| f64::from_bits(*gain) > 0.1));
+    }
 }

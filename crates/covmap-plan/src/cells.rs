@@ -1,12 +1,14 @@
 //! What the planner keeps of the map, laid out for the beams of many view-points.
 
+use crate::gain::lanes::{LANES, Lanes};
 use crate::{PlannerParameters, Stencil};
 use covmap::{Cell, CoverageMap, Grid, MAX_BINS, bin_coverage};
 
 /// The planner's copy of the map.
 ///
-/// Codes and limits have a border as wide as the stencil, so that a stencil's cell is at a
-/// constant offset from every view-point, inside the grid or not.
+/// Codes, reflections and limits have a border as wide as the stencil, so that a stencil's cell
+/// is at a constant offset from every view-point, inside the grid or not. Histograms lie in
+/// blocks of [`LANES`] neighbouring cells of a row, bin by bin.
 #[derive(Debug, Clone)]
 pub(crate) struct Cells {
     grid: Grid,
@@ -17,27 +19,27 @@ pub(crate) struct Cells {
     /// Bordered: the distance up to which the cell is a reason to measure; 0 if it is none.
     limits: Vec<f32>,
     /// ρ by code.
+    reflection_of: Vec<f64>,
+    /// Bordered: ρ.
     reflections: Vec<f64>,
-    /// For each cell of the grid h_1 … h_n, then h_1·log h_1 … h_n·log h_n.
-    rows: Vec<f32>,
-    entropies: Vec<f32>,
+    blocks: Vec<Block>,
+    h: Vec<Lanes>,
+    u: Vec<Lanes>,
+}
+
+/// What is kept of [`LANES`] neighbouring cells beside their histograms.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Block {
+    /// Their entropies \[nats\].
+    pub(crate) entropy: Lanes,
+    /// 1 for a cell that a measurement can change, else 0.
+    pub(crate) changeable: Lanes,
 }
 
 /// Codes past the last bin.
 const UNKNOWN: usize = 0;
 const PINNED: usize = 1;
 const OUTSIDE: usize = 2;
-
-/// Where a beam's cells lie from a view-point, in the planner's layout.
-#[derive(Debug, Clone)]
-pub(crate) struct Offsets {
-    /// In the bordered rasters.
-    pub(crate) bordered: Vec<isize>,
-    /// In the grid.
-    pub(crate) plain: Vec<isize>,
-    /// d^l [m].
-    pub(crate) distance: Vec<f32>,
-}
 
 impl Cells {
     pub(crate) fn new(
@@ -48,19 +50,26 @@ impl Cells {
     ) -> Self {
         let border = usize::try_from(stencil.radius).unwrap_or(0);
         let bordered = (grid.width() + 2 * border) * (grid.height() + 2 * border);
-        let mut reflections: Vec<f64> = (0..bins).map(|k| bin_coverage(k, bins)).collect();
-        reflections.extend([parameters.unknown_reflection, 0.0, 0.0]);
+        let mut reflection_of: Vec<f64> = (0..bins).map(|k| bin_coverage(k, bins)).collect();
+        reflection_of.extend([parameters.unknown_reflection, 0.0, 0.0]);
         #[allow(clippy::cast_possible_truncation, reason = "at most 67 codes")]
         let outside = (bins + OUTSIDE) as u8;
+        // Lanes past the last cell of a row read on.
+        let bordered = bordered + LANES;
+        let blocks = grid.height() * grid.width().div_ceil(LANES);
+        let block = Block { entropy: [0.0; LANES], changeable: [0.0; LANES] };
         let mut cells = Self {
             grid,
             bins,
             border,
             codes: vec![outside; bordered],
             limits: vec![0.0; bordered],
-            reflections,
-            rows: vec![0.0; grid.len() * 2 * bins],
-            entropies: vec![0.0; grid.len()],
+            reflection_of,
+            reflections: vec![0.0; bordered],
+            blocks: vec![block; blocks],
+            // Past the last cell of a row any histogram will do, if its numbers are tame.
+            h: vec![[1.0; LANES]; blocks * bins],
+            u: vec![[0.0; LANES]; blocks * bins],
         };
         if let Ok(unknown) = CoverageMap::new(grid, bins) {
             grid.cells().for_each(|cell| {
@@ -70,28 +79,11 @@ impl Cells {
         cells
     }
 
-    pub(crate) fn offsets(&self, stencil: &Stencil) -> Vec<Offsets> {
-        let beam = |beam: &crate::BeamStencil| {
-            let offset = |width: usize| {
-                let width = isize::try_from(width).unwrap_or(0);
-                beam.cells.iter().map(move |c| c.dy as isize * width + c.dx as isize).collect()
-            };
-            #[allow(clippy::cast_possible_truncation, reason = "limits are f32")]
-            let distance = beam.cells.iter().map(|c| c.cell_distance as f32).collect();
-            Offsets {
-                bordered: offset(self.grid.width() + 2 * self.border),
-                plain: offset(self.grid.width()),
-                distance,
-            }
-        };
-        stencil.beams.iter().map(beam).collect()
-    }
-
     /// The place of a cell in the bordered rasters, by its row-major index.
     #[inline(always)]
     pub(crate) fn bordered(&self, index: usize) -> usize {
         let (x, y) = (index % self.grid.width(), index / self.grid.width());
-        (y + self.border) * (self.grid.width() + 2 * self.border) + x + self.border
+        (y + self.border) * self.bordered_width() + x + self.border
     }
 
     /// Takes over a cell's posterior. Returns whether what it reflects, or whether it can
@@ -101,37 +93,39 @@ impl Cells {
         let mut posterior = [0.0; MAX_BINS];
         let posterior = &mut posterior[..self.bins];
         map.read_posterior(cell, posterior);
-        let (h, u) =
-            self.rows[2 * self.bins * index..2 * self.bins * (index + 1)].split_at_mut(self.bins);
+        let (block, lane) = self.block_of(index);
+        let rows = block * self.bins..(block + 1) * self.bins;
+        let (h, u) = (&mut self.h[rows.clone()], &mut self.u[rows]);
         for ((h, u), p) in h.iter_mut().zip(u).zip(posterior.iter()) {
             #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-            ((*h, *u) = (*p as f32, (p * libm::log(*p)) as f32));
+            ((h[lane], u[lane]) = (*p as f32, (p * libm::log(*p)) as f32));
         }
-        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-        (self.entropies[index] = map.entropy(cell) as f32);
         let code = if map.is_pinned(cell) {
             self.bins + PINNED
         } else if map.is_known(cell) {
-            self.reflections[..self.bins].partition_point(|c| *c < map.mode(cell))
+            self.reflection_of[..self.bins].partition_point(|c| *c < map.mode(cell))
         } else {
             self.bins + UNKNOWN
         };
+        let changeable = code <= self.bins + UNKNOWN;
+        self.blocks[block].changeable[lane] = f32::from(u8::from(changeable));
+        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
+        (self.blocks[block].entropy[lane] = map.entropy(cell) as f32);
         let bordered = self.bordered(index);
+        self.reflections[bordered] = self.reflection_of[code];
         #[allow(clippy::cast_possible_truncation, reason = "at most 67 codes")]
         let old = std::mem::replace(&mut self.codes[bordered], code as u8);
         usize::from(old) != code
     }
 
-    /// ρ of the cell at a place in the bordered rasters.
-    #[inline(always)]
-    pub(crate) fn reflection(&self, bordered: usize) -> f64 {
-        self.reflections[usize::from(self.codes[bordered])]
+    /// ρ of all cells, bordered.
+    pub(crate) fn reflections(&self) -> &[f64] {
+        &self.reflections
     }
 
-    /// Whether a measurement can change the cell at a place in the bordered rasters.
-    #[inline(always)]
-    pub(crate) fn is_changeable(&self, bordered: usize) -> bool {
-        usize::from(self.codes[bordered]) <= self.bins + UNKNOWN
+    /// Up to which distance each cell is a reason to measure, bordered \[m\].
+    pub(crate) fn limits(&self) -> &[f32] {
+        &self.limits
     }
 
     /// Whether the cell at a place in the bordered rasters is a reason to measure from so far
@@ -148,19 +142,27 @@ impl Cells {
         old.to_bits() != limit.to_bits()
     }
 
-    /// h and h·log h of a cell by its row-major index.
-    #[inline(always)]
-    pub(crate) fn row(&self, index: usize) -> (&[f32], &[f32]) {
-        self.rows[2 * self.bins * index..2 * self.bins * (index + 1)].split_at(self.bins)
-    }
-
     /// A cell's entropy by its row-major index \[nats\].
-    #[inline(always)]
     pub(crate) fn entropy(&self, index: usize) -> f32 {
-        self.entropies[index]
+        let (block, lane) = self.block_of(index);
+        self.blocks[block].entropy[lane]
     }
 
-    pub(crate) fn bins(&self) -> usize {
-        self.bins
+    /// The block that holds a cell, and the cell's lane in it.
+    fn block_of(&self, index: usize) -> (usize, usize) {
+        let (x, y) = (index % self.grid.width(), index / self.grid.width());
+        (y * self.grid.width().div_ceil(LANES) + x / LANES, x % LANES)
+    }
+
+    /// A block, row by row of the grid, with its h and h·log h.
+    #[inline(always)]
+    pub(crate) fn block(&self, block: usize) -> (&Block, &[Lanes], &[Lanes]) {
+        let rows = block * self.bins..(block + 1) * self.bins;
+        (&self.blocks[block], &self.h[rows.clone()], &self.u[rows])
+    }
+
+    /// How far apart two rows lie in the bordered rasters.
+    pub(crate) fn bordered_width(&self) -> usize {
+        self.grid.width() + 2 * self.border
     }
 }

@@ -3,6 +3,9 @@
 use covmap::Cell;
 use serde::{Deserialize, Serialize};
 
+/// How many candidates a decision reports.
+pub(crate) const REPORTED: usize = 5;
+
 /// A candidate view-point with all that speaks for and against it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct CandidateRecord {
@@ -34,8 +37,7 @@ pub struct Decision {
     pub passage: Vec<Cell>,
     /// The number of candidates, |L(c)|.
     pub candidates: usize,
-    /// How many of them have E\[I\] < 0, as far as gains were computed: not where an upper
-    /// bound showed that a candidate cannot be among the best.
+    /// How many of them have E\[I\] < 0.
     pub negative_gains: usize,
     /// How many were so close to the best that the literal equations decided between them.
     pub decided_by_oracle: usize,

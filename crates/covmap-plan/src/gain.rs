@@ -1,10 +1,12 @@
 //! E\[I(l)\]: how much a view-point is expected to tell. Eq. (13) and (14).
 //!
-//! This file is the equations as printed, in f64: the oracle. [`fast`] holds what runs.
+//! This file is the equations as printed, in f64: the oracle. [`sweep`] holds what runs.
 
-pub(crate) mod fast;
-mod logarithm;
-mod tables;
+mod evidence;
+mod interpolation;
+pub(crate) mod lanes;
+mod rings;
+pub(crate) mod sweep;
 
 use crate::{
     BeamStencil, PlannerParameters, RangeLikelihood, Stencil, range_likelihood, reflection,

@@ -20,9 +20,9 @@ pub(crate) fn nearest_passage(
     const UNSEEN: usize = usize::MAX;
     let mut previous = vec![UNSEEN; grid.len()];
     let mut front = VecDeque::new();
-    for index in 0..grid.len() {
+    for (index, previous) in previous.iter_mut().enumerate() {
         if let Some(cost) = travel_cost(index) {
-            previous[index] = index;
+            *previous = index;
             front.push_back((index, cost, 0));
         }
     }

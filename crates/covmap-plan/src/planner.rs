@@ -1,13 +1,14 @@
 //! The planner: one owner of what is explored, what stalls, and what was computed before.
 
-use crate::beam_cache::{BeamCache, Upto};
+use crate::beam_cache::BeamCache;
 use crate::cells::Cells;
-use crate::decision::{Score, best};
-use crate::evaluate::{Evaluation, REPORTED};
+use crate::decision::{REPORTED, Score, best};
 use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
+use crate::onlookers::Mark;
 use crate::passage::{large_regions, nearest_passage};
 use crate::traversable::Traversable;
+use crate::view_points::ViewPoints;
 use crate::window::Window;
 use crate::{
     BodyEvidence, CandidateRecord, Decision, PlannerError, PlannerParameters, Scope, Stencil,
@@ -196,9 +197,9 @@ impl Planner {
                 }
             }
             if reflects_anew {
-                self.beams.mark_sights(change.cell);
+                self.beams.mark(index, Mark::Sight);
             } else if with_gain {
-                self.beams.mark_gains(change.cell, (change.after - change.before).max(0.0) + 1e-6);
+                self.beams.mark(index, Mark::Gain);
             }
             self.update_limit(map, index);
         }
@@ -219,7 +220,7 @@ impl Planner {
             0.0
         };
         if self.cells.set_limit(index, limit) {
-            self.beams.mark_limit(cell);
+            self.beams.mark(index, Mark::Limit);
         }
     }
 
@@ -233,9 +234,7 @@ impl Planner {
     /// total probability of at least ½.
     pub fn cells_in_sight(&mut self, view_point: Cell) -> Vec<(usize, f32)> {
         let Some(index) = self.grid.index(view_point) else { return Vec::new() };
-        let mut least = vec![f64::INFINITY; self.grid.len()];
-        least[index] = f64::NEG_INFINITY;
-        self.beams.refresh(&self.cells, &least, Upto::Sight);
+        self.beams.refresh_sight(&self.cells, &ViewPoints::one(&self.grid, index));
         self.beams.cells_in_sight(index)
     }
 
@@ -244,16 +243,12 @@ impl Planner {
     /// again until it can leave, or there is no reason left.
     pub(crate) fn candidates(&mut self, from: Cell) -> Candidates {
         let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
-        let mut least = vec![f64::INFINITY; self.grid.len()];
-        costs.reached().for_each(|index| least[index] = f64::NEG_INFINITY);
-        self.beams.refresh(&self.cells, &least, Upto::Sight);
+        let mut reached = ViewPoints::new(&self.grid);
+        costs.reached().for_each(|index| reached.insert(index));
+        self.beams.refresh_sight(&self.cells, &reached);
         let trapped = costs.reached().all(|i| self.measured.is_near(i, from));
-        let is_candidate = |i: &usize| {
-            costs.cost(*i).is_some()
-                && (trapped || !self.measured.is_spent(*i))
-                && self.beams.has_reason(*i)
-        };
-        let indices = (0..self.grid.len()).filter(is_candidate).collect();
+        let mut indices = reached.indices(|group| self.beams.reasons(group));
+        indices.retain(|i| trapped || !self.measured.is_spent(*i));
         Candidates { indices, costs, passage: Vec::new() }
     }
 
@@ -268,9 +263,9 @@ impl Planner {
         let cut_off = large_regions(&self.grid, ROOM * self.traversable.body_cells(), |i| {
             self.traversable.at(i) && here.cost(i).is_none()
         });
-        let least: Vec<f64> =
-            cut_off.iter().map(|c| if *c { f64::NEG_INFINITY } else { f64::INFINITY }).collect();
-        self.beams.refresh(&self.cells, &least, Upto::Sight);
+        let mut wanted = ViewPoints::new(&self.grid);
+        (0..self.grid.len()).filter(|i| cut_off[*i]).for_each(|i| wanted.insert(i));
+        self.beams.refresh_sight(&self.cells, &wanted);
         let is_candidate =
             |i: usize| cut_off[i] && !self.measured.is_spent(i) && self.beams.has_reason(i);
         let passage = nearest_passage(
@@ -300,19 +295,21 @@ impl Planner {
         candidates.indices.iter().map(record).collect()
     }
 
-    fn evaluation(&mut self) -> Evaluation<'_> {
-        let score = self.score();
-        Evaluation { grid: &self.grid, cells: &self.cells, beams: &mut self.beams, score }
-    }
-
     /// Fills in the gains of all records. A strategy without gains does not keep them up to
     /// date, so they are forgotten first.
     fn fill_gains(&mut self, records: &mut [CandidateRecord]) {
-        if !self.parameters.strategy.uses_gain() {
-            let indices = records.iter().filter_map(|r| self.grid.index(r.cell));
-            indices.for_each(|index| self.beams.forget_gain(index));
+        let mut wanted = ViewPoints::new(&self.grid);
+        let indices = records.iter().filter_map(|r| self.grid.index(r.cell));
+        for index in indices {
+            if !self.parameters.strategy.uses_gain() {
+                self.beams.forget_gain(index);
+            }
+            wanted.insert(index);
         }
-        self.evaluation().all(records);
+        self.beams.refresh_gain(&self.cells, &wanted);
+        for record in records {
+            record.gain = self.grid.index(record.cell).map_or(0.0, |index| self.beams.gain(index));
+        }
     }
 
     /// Every candidate for a robot in the cell `from`, with gains and scores, in row-major
@@ -345,7 +342,7 @@ impl Planner {
         let with_gain = self.parameters.strategy.uses_gain();
         let mut records = self.records(&candidates);
         if with_gain {
-            self.evaluation().best(&mut records);
+            self.fill_gains(&mut records);
         }
         self.score().apply(&mut records);
         let decided_by_oracle = if with_gain { self.decide_ties(map, &mut records) } else { 0 };
@@ -370,8 +367,14 @@ impl Planner {
     /// The five best candidates; where the strategy needs no gains they are computed for
     /// these.
     fn report(&mut self, mut records: Vec<CandidateRecord>) -> Vec<CandidateRecord> {
-        records.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell)));
-        records.truncate(REPORTED);
+        let better = |a: &CandidateRecord, b: &CandidateRecord| {
+            b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell))
+        };
+        if records.len() > REPORTED {
+            records.select_nth_unstable_by(REPORTED, better);
+            records.truncate(REPORTED);
+        }
+        records.sort_by(better);
         if !self.parameters.strategy.uses_gain() {
             self.fill_gains(&mut records);
             let largest = records.iter().map(|r| r.gain).fold(0.0, f64::max);
@@ -437,7 +440,7 @@ impl Planner {
             }
             self.close_window(map);
             let mut left = self.candidates(from);
-            let nearest = left.costs.reached().find(|i| left.indices.contains(i));
+            let nearest = left.costs.nearest(&left.indices);
             if let Some(nearest) = nearest {
                 self.open_window(self.grid.cell(nearest));
                 if !left.indices.iter().any(|i| self.window_offers(*i)) {

@@ -1,51 +1,23 @@
 //! d_c(l, x): how far it is to each view-point.
 
+mod label;
+#[cfg(test)]
+mod plain;
+mod spread;
+mod steps;
+
 use covmap::{Cell, Grid};
-use std::cmp::{Ordering, Reverse};
-use std::collections::BinaryHeap;
-
-const UNREACHED: u32 = u32::MAX;
-
-/// A length as its numbers of straight and of diagonal steps: equal lengths are equal to
-/// the last bit however they came about.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Steps {
-    straight: u32,
-    diagonal: u32,
-}
-
-impl Steps {
-    fn in_cells(self) -> f64 {
-        f64::from(self.straight) + std::f64::consts::SQRT_2 * f64::from(self.diagonal)
-    }
-}
-
-#[derive(PartialEq, Eq)]
-struct Front {
-    steps: Steps,
-    index: u32,
-}
-
-impl Ord for Front {
-    fn cmp(&self, other: &Self) -> Ordering {
-        let by_length = self.steps.in_cells().total_cmp(&other.steps.in_cells());
-        by_length.then(self.index.cmp(&other.index))
-    }
-}
-
-impl PartialOrd for Front {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
+use label::{Label, in_cells};
+use spread::Spread;
+use steps::{STEPS, allowed, neighbourhoods};
 
 /// The shortest ways from one cell to all that can be reached from it.
 #[derive(Debug, Clone)]
 pub struct TravelCosts {
     grid: Grid,
-    steps: Vec<Steps>,
-    previous: Vec<u32>,
-    reached: Vec<u32>,
+    labels: Vec<Label>,
+    /// The steps that lead from each cell to a traversable one.
+    near: Vec<u8>,
 }
 
 /// The shortest ways from `source` over traversable cells to all others: eight neighbours,
@@ -56,71 +28,65 @@ pub struct TravelCosts {
 /// # Panics
 /// If the source lies outside the grid.
 pub fn travel_costs(grid: &Grid, source: Cell, traversable: impl Fn(usize) -> bool) -> TravelCosts {
-    let index = |cell: Cell| grid.index(cell).and_then(|i| u32::try_from(i).ok());
-    let start = index(source).unwrap_or_else(|| panic!("{source:?} lies outside the grid"));
-    let unreached = Steps { straight: UNREACHED, diagonal: 0 };
-    let mut steps = vec![unreached; grid.len()];
-    let mut previous = vec![UNREACHED; grid.len()];
-    let mut reached = Vec::new();
-    let mut heap = BinaryHeap::new();
-    steps[start as usize] = Steps { straight: 0, diagonal: 0 };
-    heap.push(Reverse(Front { steps: steps[start as usize], index: start }));
-    let free = |cell: Cell| index(cell).filter(|i| traversable(*i as usize));
-    while let Some(Reverse(front)) = heap.pop() {
-        if front.steps != steps[front.index as usize] {
-            continue;
-        }
-        reached.push(front.index);
-        let cell = grid.cell(front.index as usize);
-        for dy in -1..=1 {
-            for dx in -1..=1 {
-                let Some(next) = free(cell.offset(dx, dy)).filter(|_| (dx, dy) != (0, 0)) else {
-                    continue;
-                };
-                let diagonal = dx != 0 && dy != 0;
-                if diagonal
-                    && (free(cell.offset(dx, 0)).is_none() || free(cell.offset(0, dy)).is_none())
-                {
-                    continue;
-                }
-                let Steps { straight: s, diagonal: d } = front.steps;
-                let longer = if diagonal { (s, d + 1) } else { (s + 1, d) };
-                let longer = Steps { straight: longer.0, diagonal: longer.1 };
-                if longer.in_cells() < steps[next as usize].in_cells() {
-                    steps[next as usize] = longer;
-                    previous[next as usize] = front.index;
-                    heap.push(Reverse(Front { steps: longer, index: next }));
-                }
-            }
-        }
-    }
-    TravelCosts { grid: *grid, steps, previous, reached }
+    let source = grid.index(source).and_then(|index| u32::try_from(index).ok());
+    let source = source.unwrap_or_else(|| panic!("the source lies outside the grid"));
+    let near = neighbourhoods(grid, traversable);
+    let labels = Spread::new(&near, grid.width()).from(source);
+    TravelCosts { grid: *grid, labels, near }
 }
 
 impl TravelCosts {
-    /// d_c of the cell with a row-major index \[m\]; `None` if it cannot be reached.
+    /// d_c of the cell with a row-major index \[m\]; `None` if it cannot be reached. Equal
+    /// lengths are equal to the last bit, however they came about.
     pub fn cost(&self, index: usize) -> Option<f64> {
-        let steps = self.steps[index];
-        (steps.straight != UNREACHED).then(|| steps.in_cells() * self.grid.resolution())
+        in_cells(self.labels[index]).map(|length| length * self.grid.resolution())
     }
 
-    /// All cells that can be reached, nearest first, by their row-major index.
+    /// All cells that can be reached, by their row-major index, in ascending order.
     pub fn reached(&self) -> impl Iterator<Item = usize> {
-        self.reached.iter().map(|i| *i as usize)
+        let is_reached = |(_, label): &(usize, &Label)| **label != label::UNREACHED;
+        self.labels.iter().enumerate().filter(is_reached).map(|(index, _)| index)
+    }
+
+    /// The nearest of some cells by their row-major index, the first of several; `None` if none
+    /// of them can be reached.
+    pub(crate) fn nearest(&self, indices: &[usize]) -> Option<usize> {
+        indices
+            .iter()
+            .copied()
+            .filter(|i| self.labels[*i] != label::UNREACHED)
+            .min_by_key(|i| label::length(self.labels[*i]))
     }
 
     /// The cells of the shortest way to a cell, without the source and with the cell itself;
-    /// empty for the source; `None` if the cell cannot be reached.
+    /// empty for the source; `None` if the cell cannot be reached. Of several shortest ways
+    /// the one whose last step comes from the nearest cell, the first of these in row-major
+    /// order, and so on back to the source.
     pub fn path_to(&self, cell: Cell) -> Option<Vec<Cell>> {
         let mut at = self.grid.index(cell)?;
         self.cost(at)?;
         let mut path = Vec::new();
-        while self.previous[at] != UNREACHED {
+        while let Some(previous) = self.previous(at) {
             path.push(self.grid.cell(at));
-            at = self.previous[at] as usize;
+            at = previous;
         }
         path.reverse();
         Some(path)
+    }
+
+    /// The cell before the last on the way to a cell; `None` for the source.
+    fn previous(&self, at: usize) -> Option<usize> {
+        // Diagonal steps are longer, so they come from nearer cells.
+        const NEAREST_FIRST: [usize; 8] = [1, 3, 7, 5, 2, 0, 4, 6];
+        let comes_by = |step: usize| {
+            let (dx, dy) = STEPS[step];
+            let back = -(dy as isize * self.grid.width().cast_signed() + dx as isize);
+            let from = at.checked_add_signed(back).filter(|from| *from < self.near.len())?;
+            let is_step = allowed(self.near[from]) & (1 << step) != 0;
+            let length = if step.is_multiple_of(2) { label::STRAIGHT } else { label::DIAGONAL };
+            (is_step && label::is_sum(self.labels[at], self.labels[from], length)).then_some(from)
+        };
+        NEAREST_FIRST.into_iter().find_map(comes_by)
     }
 }
 

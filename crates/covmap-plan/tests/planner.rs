@@ -2,15 +2,19 @@
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
 use covmap::{Cell, CoverageMap, Grid, Raster};
-use covmap_model::{ModelParameters, SensorModel, integrate, integrate_body};
+use covmap_model::{
+    FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel, integrate,
+    integrate_body,
+};
 use covmap_plan::{
     CellStatus, GAIN_TOLERANCE, Planner, PlannerParameters, Stencil, Strategy,
     expected_information_gain,
 };
-use covmap_sonar::{Range, Scan, SonarRing};
+use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
 use proptest::prelude::*;
 use proptest::strategy::Strategy as Generator;
+use std::f64::consts::PI;
 
 const RADIUS: f64 = 0.27;
 
@@ -28,9 +32,14 @@ fn setting(strategy: Strategy, bins: usize, change: impl Fn(&mut PlannerParamete
         // Few bins cannot show a narrow Gaussian.
         (model_parameters.sigma_out.base, model_parameters.sigma_in) = (0.12, 0.3);
     }
-    let model = SensorModel::new(&model_parameters, &SonarRing::b21r(), 0.1).unwrap();
     let mut parameters = PlannerParameters { strategy, ..PlannerParameters::standard() };
     change(&mut parameters);
+    setting_of(&model_parameters, &SonarRing::b21r(), parameters)
+}
+
+fn setting_of(model: &ModelParameters, ring: &SonarRing, parameters: PlannerParameters) -> Setting {
+    let model = SensorModel::new(model, ring, 0.1).unwrap();
+    let bins = model.parameters().bins;
     let grid = Grid::new(Point2::new(-2.0, -1.5), 0.1, 40, 30).unwrap();
     let map = CoverageMap::new(grid, bins).unwrap();
     let outside = Raster::filled(grid, false);
@@ -64,6 +73,39 @@ fn some_ranges() -> impl Generator<Value = Vec<Range>> {
     prop::collection::vec(range, 24)
 }
 
+/// Models that differ in all that the fast evaluation makes use of.
+fn some_models() -> impl Generator<Value = ModelParameters> {
+    let gamma = (0.02..0.4f64, 0.0..0.4f64, prop_oneof![Just(0.0), 0.0..0.3f64]);
+    let evidence = (gamma, prop::sample::select(vec![0.0, 0.1, 0.15, 0.35]), 0.4..=1.0f64);
+    (evidence, prop_oneof![Just(0.0), 0.1..1.5f64], any::<bool>()).prop_map(
+        |(((base, per_cell_distance, per_range), behind, tempering), range, cones_wanted)| {
+            let by_hand = ModelParameters::by_hand();
+            let half_angle = 0.13;
+            let cones = FootprintRule::Cones { half_angle };
+            let sectors = FootprintRule::Sectors { half_angle };
+            ModelParameters {
+                usable_range: 1.5,
+                gamma: Linear { base, per_cell_distance, per_range },
+                behind,
+                tempering,
+                no_echo: NoEchoParameters { range, ..by_hand.no_echo },
+                footprint: if cones_wanted { cones } else { sectors },
+                ..by_hand
+            }
+        },
+    )
+}
+
+/// Sensors around the robot, so far from its centre \[m\].
+fn ring(offset: f64) -> SonarRing {
+    let beam = |i: u32| {
+        let angle = 2.0 * PI * f64::from(i) / 24.0;
+        let pose = Isometry2::rotation(angle) * Isometry2::translation(offset, 0.0);
+        Beam { pose, half_angle: 0.13, min_range: 0.0, max_range: 5.0 }
+    };
+    SonarRing::new((0..24).map(beam).collect()).unwrap()
+}
+
 fn some_scans() -> impl Generator<Value = Vec<(f64, f64, Vec<Range>)>> {
     prop::collection::vec((-1.0..1.0f64, -0.7..0.7f64, some_ranges()), 1..6)
 }
@@ -76,6 +118,24 @@ fn strategies() -> impl Generator<Value = Strategy> {
         Strategy::IgCl { alpha: 0.3 },
         Strategy::Count { times: 2.0, half_distance: Some(2.0) },
     ])
+}
+
+/// Compares every seventh candidate's gain with the literal equations.
+fn check_gains(s: &mut Setting, stencil: &Stencil, from: Cell) -> Result<(), TestCaseError> {
+    let table = s.planner.candidate_table(from);
+    let largest = table.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
+    for record in table.iter().step_by(7) {
+        let exact =
+            expected_information_gain(&s.map, &s.model, stencil, &s.parameters, record.cell);
+        prop_assert!(
+            (record.gain - exact).abs() <= GAIN_TOLERANCE * largest,
+            "{:?}: {} is not {}",
+            record.cell,
+            record.gain,
+            exact
+        );
+    }
+    Ok(())
 }
 
 proptest! {
@@ -92,15 +152,23 @@ proptest! {
         let home = s.map.grid().cell_at(Point2::origin()).unwrap();
         for (x, y, ranges) in scans {
             s.scan(x, y, &ranges);
-            let table = s.planner.candidate_table(home);
-            let largest = table.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
-            for record in table.iter().step_by(7) {
-                let exact = expected_information_gain(&s.map, &s.model, &stencil, &s.parameters, record.cell);
-                prop_assert!(
-                    (record.gain - exact).abs() <= GAIN_TOLERANCE * largest,
-                    "{:?}: {} is not {}", record.cell, record.gain, exact
-                );
-            }
+            check_gains(&mut s, &stencil, home)?;
+        }
+    }
+
+    #[test]
+    fn the_fast_gain_is_the_literal_one_for_all_models_and_rings(
+        model in some_models(), offset in prop::sample::select(vec![0.0, 0.05, 0.1, 0.2]), scans in some_scans()
+    ) {
+        // With an offset of half a cell there are cells exactly where two rings meet.
+        let parameters = PlannerParameters { strategy: Strategy::Ig, ..PlannerParameters::standard() };
+        let mut s = setting_of(&model, &ring(offset), parameters);
+        s.stand(0.0, 0.0);
+        let stencil = Stencil::new(&s.model, 0.0);
+        let home = s.map.grid().cell_at(Point2::origin()).unwrap();
+        for (x, y, ranges) in scans {
+            s.scan(x, y, &ranges);
+            check_gains(&mut s, &stencil, home)?;
         }
     }
 

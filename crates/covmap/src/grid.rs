@@ -159,21 +159,25 @@ impl Grid {
     }
 
     /// The lower left corner of cell (0, 0) \[m\].
+    #[inline]
     pub fn lower_left(&self) -> Point2<f64> {
         self.lower_left
     }
 
     /// The side of a cell, r \[m\].
+    #[inline]
     pub fn resolution(&self) -> f64 {
         self.resolution
     }
 
     /// The number of columns.
+    #[inline]
     pub fn width(&self) -> usize {
         self.width
     }
 
     /// The number of rows.
+    #[inline]
     pub fn height(&self) -> usize {
         self.height
     }
@@ -191,6 +195,7 @@ impl Grid {
     }
 
     /// The cell that holds a point, whether it lies in the grid or not.
+    #[inline]
     pub fn unbounded_cell_at(&self, point: Point2<f64>) -> Cell {
         let scaled = (point - self.lower_left) / self.resolution;
         #[allow(clippy::cast_possible_truncation, reason = "saturates far outside of any grid")]
@@ -199,11 +204,13 @@ impl Grid {
     }
 
     /// The centre of a cell \[m\].
+    #[inline]
     pub fn center(&self, cell: Cell) -> Point2<f64> {
         self.lower_corner(cell) + Vector2::repeat(0.5 * self.resolution)
     }
 
     /// The lower left corner of a cell \[m\].
+    #[inline]
     pub fn lower_corner(&self, cell: Cell) -> Point2<f64> {
         self.lower_left + Vector2::new(f64::from(cell.x), f64::from(cell.y)) * self.resolution
     }

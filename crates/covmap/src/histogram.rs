@@ -46,13 +46,13 @@ pub fn product(prior: &[f64], evidence: &[f64], out: &mut [f64]) -> f64 {
 /// ```text
 /// H(h) = −Σ p(h_i) · log p(h_i)
 /// ```
-pub(crate) fn entropy(probabilities: &[f64]) -> f64 {
+fn entropy(probabilities: &[f64]) -> f64 {
     let sum: f64 = probabilities.iter().filter(|p| **p > 0.0).map(|p| p * libm::log(*p)).sum();
     (-sum).max(0.0)
 }
 
 /// The first bin with the largest probability: a tie is the lower coverage.
-pub(crate) fn mode_bin(probabilities: &[f64]) -> usize {
+pub(crate) fn mode_bin<T: PartialOrd>(probabilities: &[T]) -> usize {
     let mut best = 0;
     for (bin, p) in probabilities.iter().enumerate() {
         if *p > probabilities[best] {

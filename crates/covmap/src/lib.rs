@@ -15,7 +15,6 @@
 //! let grid = Grid::new(Point2::origin(), 0.1, 40, 30)?;
 //! let mut map = CoverageMap::new(grid, 11)?;
 //! let cell = grid.cell_at(Point2::new(1.23, 0.45)).expect("inside the grid");
-//! assert!(!map.is_known(cell));
 //!
 //! // Evidence that this cell is covered 20 %, one weight for each bin 0, 0.1, … 1:
 //! let evidence = [0.1, 0.5, 2.0, 0.5, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1, 0.1];
@@ -29,11 +28,12 @@ mod belief_file;
 mod coverage_map;
 mod grid;
 mod histogram;
+pub mod lanes;
 mod proper_score;
 mod raster;
 
 pub use belief_file::BeliefFileError;
-pub use coverage_map::{Change, CoverageMap, MapError};
+pub use coverage_map::{Change, CoverageMap, EvidenceBlock, MapError};
 pub use grid::{Cell, Grid, GridError, MAX_CELLS};
 pub use histogram::{Histogram, MAX_BINS, MIN_BINS, PROBABILITY_FLOOR, bin_coverage, product};
 pub use proper_score::{Class, LIKELIHOOD_FLOOR, crps, log_likelihood, lower_bin, randomised_pit};

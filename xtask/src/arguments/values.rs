@@ -1,6 +1,7 @@
 //! Values that can be typed: numbers with their bounds, poses.
 
 use nalgebra::{Isometry2, Vector2};
+use std::path::PathBuf;
 
 fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| "not a number".to_owned())?;
@@ -36,4 +37,9 @@ pub(super) fn start(text: &str) -> Result<Isometry2<f64>, String> {
         }
         _ => Err("three finite numbers are needed, as in 1.5,6,90".to_owned()),
     }
+}
+
+pub(super) fn named_file(text: &str) -> Result<(String, PathBuf), String> {
+    let (name, file) = text.split_once('=').ok_or("it is NAME=FILE")?;
+    Ok((name.to_owned(), file.into()))
 }

@@ -24,7 +24,7 @@ fn with_gain(config: &Config) -> Config {
 }
 
 /// IG with every cell for ever a reason to measure: every reachable cell is a candidate.
-fn for_ever(config: &Config) -> Config {
+pub(super) fn for_ever(config: &Config) -> Config {
     let mut config = with_gain(config);
     config.planner.scan_spacing = 0.0;
     config.planner.entropy_threshold = 0.0;
@@ -126,7 +126,7 @@ pub(super) fn large(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
 }
 
 /// Where a robot fits, on a lattice over the explored part.
-fn places(world: &World, radius: f64) -> Vec<Point2<f64>> {
+pub(super) fn places(world: &World, radius: f64) -> Vec<Point2<f64>> {
     let (low, size) = (world.lower_left(), world.size());
     let along = |first: f64, length: f64| {
         let steps = (0u32..).map(move |i| f64::from(i) * SPACING + 0.5 * SPACING);
@@ -138,14 +138,18 @@ fn places(world: &World, radius: f64) -> Vec<Point2<f64>> {
 }
 
 /// Some decisions, one after another.
-struct Decisions {
+pub(super) struct Decisions {
     /// How long each took: noting what changed, and choosing \[s\].
-    seconds: Vec<f64>,
+    pub(super) seconds: Vec<f64>,
     /// How many view-points were decided by the literal equations, on average.
     literal: f64,
 }
 
-fn decide(situation: &mut Situation<'_>, first: Decision, many: usize) -> Result<Decisions> {
+pub(super) fn decide(
+    situation: &mut Situation<'_>,
+    first: Decision,
+    many: usize,
+) -> Result<Decisions> {
     let (mut seconds, mut literal, mut decision) = (Vec::new(), 0, first);
     for _ in 0..many {
         let noted = situation.go(&decision);

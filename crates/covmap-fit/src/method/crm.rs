@@ -2,6 +2,7 @@
 //!
 //! Its maps are only compared: the robot's own belief changes in `covmap-model` alone.
 
+use super::prior_probability;
 use covmap::{Cell, CoverageMap, Grid, bin_coverage};
 use covmap_model::{ModelError, Outcome, SensorModel};
 use covmap_sonar::Scan;
@@ -125,7 +126,7 @@ impl Crm {
                     evidence
                         .iter_mut()
                         .enumerate()
-                        .for_each(|(b, e)| *e *= self.prior_probability(b, bins));
+                        .for_each(|(b, e)| *e *= prior_probability(self.prior, b, bins));
                 }
                 let largest = evidence.iter().fold(f64::MIN_POSITIVE, |a, e| a.max(*e));
                 evidence.iter_mut().for_each(|e| *e /= largest);
@@ -141,7 +142,7 @@ impl Crm {
     fn keep(&self, map: &CoverageMap, rings: &mut Rings) -> Vec<f64> {
         let bins = map.bins();
         let unknown: f64 =
-            (0..bins).map(|k| self.prior_probability(k, bins) * bin_coverage(k, bins)).sum();
+            (0..bins).map(|k| prior_probability(self.prior, k, bins) * bin_coverage(k, bins)).sum();
         let mut keep = vec![1.0; rings.cells.last().map_or(0, |c| c.ring + 1)];
         let mut width = vec![0_u32; keep.len()];
         rings.cells.iter().for_each(|c| width[c.ring] += 1);
@@ -186,13 +187,6 @@ impl Crm {
             }
             Outcome::Beyond(_) | Outcome::NoEcho => self.lost,
         }
-    }
-
-    /// The prior probability of a bin.
-    fn prior_probability(&self, bin: usize, bins: usize) -> f64 {
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
-        let even = self.prior / bins as f64;
-        if bin == 0 { 1.0 - self.prior + even } else { even }
     }
 }
 

@@ -1,0 +1,81 @@
+//! Eq. (9) as it runs: many cells side by side, in f32.
+
+use crate::sensor_model::Reading;
+use crate::{ModelParameters, SensorModel};
+use covmap::bin_coverage;
+use covmap::lanes::{LANES, Lanes, TOGETHER, exp, flat, ln, map, rows};
+
+/// Densities are kept above this part of the largest one: a posterior's floor is far above.
+const LEAST: f32 = 1e-30;
+
+/// μ, σ and γ of many cells, in blocks of [`LANES`].
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Terms {
+    mu: Vec<f32>,
+    sigma: Vec<f32>,
+    gamma: Vec<f32>,
+}
+
+impl Terms {
+    /// Adds cells for which a model means the same by a reading, by their distances \[m\].
+    #[inline(always)]
+    pub(crate) fn extend(&mut self, model: &SensorModel, reading: &Reading, distances: &[f64]) {
+        let first = self.mu.len();
+        let count = first + distances.len();
+        [&mut self.mu, &mut self.sigma, &mut self.gamma]
+            .into_iter()
+            .for_each(|terms| terms.resize(count, 1.0));
+        let terms = self.mu[first..].iter_mut().zip(&mut self.sigma[first..]);
+        for (((mu, sigma), gamma), d) in terms.zip(&mut self.gamma[first..]).zip(distances) {
+            let (m, s, g) = model.terms(reading, *d);
+            #[allow(clippy::cast_possible_truncation, reason = "computed in f32 for speed")]
+            ((*mu, *sigma, *gamma) = (m as f32, s as f32, g.clamp(1e-30, 1e30) as f32));
+        }
+    }
+
+    /// [`SensorModel::evidence`] of a block, not normalised: the largest weight of a cell lies
+    /// between ½ and 2. Each weight is within 2e-6 of the literal one, in units of itself,
+    /// where that is more than 1e-12 of the largest.
+    #[inline(always)]
+    pub(crate) fn evidence(
+        &self,
+        block: usize,
+        p: &ModelParameters,
+        out: &mut [[Lanes; TOGETHER]],
+    ) {
+        let block = |terms: &[f32]| terms.as_chunks::<LANES>().0[block];
+        let (mus, sigmas, gammas) = (block(&self.mu), block(&self.sigma), block(&self.gamma));
+        const PEAK: f32 = 0.398_942_3; // 1/√(2π)
+        let (mut narrow, mut gamma, mut peak) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        for lane in 0..LANES {
+            narrow[lane] = 1.0 / sigmas[lane];
+            let top = narrow[lane] * PEAK;
+            let scale = 1.0 / top.max(gammas[lane]);
+            gamma[lane] = (gammas[lane] * scale).max(LEAST);
+            peak[lane] = top * scale;
+        }
+        #[allow(clippy::cast_possible_truncation, reason = "computed in f32 for speed")]
+        let (bins, tempering) = (p.bins, p.tempering as f32);
+        for (first, o) in (0..).step_by(TOGETHER).zip(out) {
+            let mut z = [[0.0; LANES]; TOGETHER];
+            for (bin, z) in (first..).zip(&mut z) {
+                #[allow(clippy::cast_possible_truncation, reason = "computed in f32 for speed")]
+                let x = bin_coverage(bin, bins) as f32;
+                for lane in 0..LANES {
+                    z[lane] = (x - mus[lane]) * narrow[lane];
+                }
+            }
+            let gauss = exp(&map(&flat(&z), |z| (-0.5 * z * z).max(-60.0)));
+            let mut density = rows(&gauss);
+            for density in &mut density {
+                for lane in 0..LANES {
+                    density[lane] = gamma[lane] + peak[lane] * density[lane];
+                }
+            }
+            if tempering < 1.0 {
+                density = rows(&exp(&map(&ln(&flat(&density)), |log| log * tempering)));
+            }
+            *o = density;
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Looking ahead along one beam from neighbouring view-points of a row, side by side.
+//!
+//! The same as [`range_likelihood`](crate::range_likelihood()) and
+//! [`RangeLikelihood::cells_in_sight`](crate::RangeLikelihood::cells_in_sight), to the last bit.
+
+use crate::BeamStencil;
+use crate::cells::Cells;
+use crate::gain::lanes::{LANES, Lanes};
+
+/// [`LANES`] probabilities.
+type Wide = [f64; LANES];
+
+/// Outcomes less likely than this are left out of E\[I\]. Behind what reflects probabilities fall
+/// at least geometrically, so that all of them together are some times this: less than a tenth
+/// of what a decision tolerates.
+const NEGLIGIBLE: f64 = 2e-7;
+
+/// A beam as all view-points see it.
+#[derive(Debug, Clone)]
+pub(crate) struct Cone {
+    beam: BeamStencil,
+    /// Where its cells lie from a view-point in the bordered rasters.
+    offsets: Vec<isize>,
+    /// d^l \[m\].
+    distances: Vec<f32>,
+    uniform_share: f64,
+}
+
+/// p(d | c) from neighbouring view-points.
+#[derive(Debug, Clone)]
+pub(crate) struct Ahead {
+    /// P(k), then the probability of no echo.
+    probabilities: Vec<Wide>,
+    /// How many rings decide.
+    traced: Wide,
+}
+
+impl Ahead {
+    pub(crate) fn new() -> Self {
+        Self { probabilities: Vec::new(), traced: [0.0; LANES] }
+    }
+
+    /// The outcomes that matter to one of some view-points, with their probabilities: 0 for
+    /// the other view-points.
+    #[inline(always)]
+    pub(crate) fn likely(&self, view_points: u16, mut take: impl FnMut(usize, Lanes)) {
+        let least: Wide = std::array::from_fn(|lane| {
+            if view_points >> lane & 1 == 1 { NEGLIGIBLE } else { f64::INFINITY }
+        });
+        for (k, p) in self.probabilities.iter().enumerate() {
+            let mut likely = [0.0; LANES];
+            for lane in 0..LANES {
+                #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
+                let narrow = p[lane] as f32;
+                likely[lane] = if p[lane] > least[lane] { narrow } else { 0.0 };
+            }
+            if likely.iter().fold(0.0, |a: f32, b| a.max(*b)) > 0.0 {
+                take(k, likely);
+            }
+        }
+    }
+}
+
+impl Cone {
+    pub(crate) fn new(beam: &BeamStencil, cells: &Cells, uniform_share: f64) -> Self {
+        let width = isize::try_from(cells.bordered_width()).unwrap_or(0);
+        let offset = |c: &crate::StencilCell| c.dy as isize * width + c.dx as isize;
+        #[allow(clippy::cast_possible_truncation, reason = "limits are f32")]
+        let distances = beam.cells.iter().map(|c| c.cell_distance as f32).collect();
+        Self {
+            beam: beam.clone(),
+            offsets: beam.cells.iter().map(offset).collect(),
+            distances,
+            uniform_share,
+        }
+    }
+
+    /// The likelihood of every outcome. `here` is the first view-point's place in the bordered
+    /// rasters.
+    #[inline(always)]
+    pub(crate) fn look(&self, cells: &Cells, here: usize, out: &mut Ahead) {
+        #[allow(clippy::cast_precision_loss, reason = "some hundred outcomes")]
+        let even = self.uniform_share / (self.beam.rings.len() + 1) as f64;
+        let keep = 1.0 - self.uniform_share;
+        let Ahead { probabilities, traced } = out;
+        probabilities.clear();
+        *traced = [0.0; LANES];
+        let mut survival = [1.0; LANES];
+        for ring in &self.beam.rings {
+            let mut q = [0.0; LANES];
+            if survival.iter().any(|s| *s > 0.0) {
+                let offsets = &self.offsets[ring.clone()];
+                for (offset, weight) in offsets.iter().zip(&self.beam.weights[ring.clone()]) {
+                    let rho: &Wide = lanes(cells.reflections(), here, *offset);
+                    for lane in 0..LANES {
+                        q[lane] += weight * rho[lane];
+                    }
+                }
+            }
+            let mut p = [0.0; LANES];
+            for lane in 0..LANES {
+                // The weights sum to 1 but for rounding.
+                let q = if q[lane] > 1.0 - 1e-12 { 1.0 } else { q[lane] };
+                traced[lane] += if survival[lane] > 0.0 { 1.0 } else { 0.0 };
+                p[lane] = keep * survival[lane] * q + even;
+                survival[lane] *= 1.0 - q;
+            }
+            probabilities.push(p);
+        }
+        probabilities.push(survival.map(|s| keep * s + even));
+    }
+
+    /// V(l) of the beam: how many of its cells are in sight.
+    #[inline(always)]
+    pub(crate) fn in_sight(&self, ahead: &Ahead) -> [u16; LANES] {
+        const LIKELY: f64 = 0.5 - 1e-12;
+        let (mut tail, mut seen) = ([0.0; LANES], [0.0; LANES]);
+        let Some((no_echo, echo)) = ahead.probabilities.split_last() else { return [0; LANES] };
+        let mut with_no_echo = *no_echo;
+        let last = self.beam.no_echo_reach;
+        for (p, reach) in echo.iter().zip(&self.beam.echo_reach).rev() {
+            let cells = as_f64(*reach);
+            for lane in 0..LANES {
+                tail[lane] += p[lane];
+                let total = if *reach <= last { tail[lane] + no_echo[lane] } else { tail[lane] };
+                let here = if total >= LIKELY { cells } else { 0.0 };
+                seen[lane] = if here > seen[lane] { here } else { seen[lane] };
+            }
+            if *reach >= last {
+                for lane in 0..LANES {
+                    with_no_echo[lane] = tail[lane] + no_echo[lane];
+                }
+            }
+        }
+        let mut out = [0; LANES];
+        for lane in 0..LANES {
+            let none = if with_no_echo[lane] >= LIKELY { as_f64(last) } else { 0.0 };
+            let seen = if none > seen[lane] { none } else { seen[lane] };
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a rank")]
+            (out[lane] = seen as u16);
+        }
+        out
+    }
+
+    /// How many of the beam's cells decide what these view-points see and gain: those that may
+    /// reflect, and those that a possible outcome covers.
+    #[inline(always)]
+    pub(crate) fn dependency(&self, ahead: &Ahead, view_points: u16) -> u16 {
+        let mut farthest = [0.0; LANES];
+        for (k, p) in ahead.probabilities.iter().enumerate() {
+            let reach = as_f64(self.beam.reach(k));
+            for lane in 0..LANES {
+                let covered = if p[lane] > 0.0 { reach } else { 0.0 };
+                farthest[lane] = if covered > farthest[lane] { covered } else { farthest[lane] };
+            }
+        }
+        let mut cells = 0;
+        for lane in (0..LANES).filter(|lane| view_points >> lane & 1 == 1) {
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
+            let (covered, traced) = (farthest[lane] as usize, ahead.traced[lane] as usize);
+            let traced = self.beam.rings[..traced].last().map_or(0, |ring| ring.end);
+            cells = cells.max(covered).max(traced);
+        }
+        #[allow(clippy::cast_possible_truncation, reason = "a planner refuses beams of more cells")]
+        let cells = cells as u16;
+        cells
+    }
+
+    /// Which of some view-points have a reason to measure in sight.
+    #[inline(always)]
+    pub(crate) fn reasons(
+        &self,
+        cells: &Cells,
+        here: usize,
+        in_sight: &[u16; LANES],
+        view_points: u16,
+    ) -> u16 {
+        let limits = cells.limits();
+        let farthest = in_sight.iter().copied().max().unwrap_or(0);
+        let mut found = [0u16; LANES];
+        let all = self.offsets.iter().zip(&self.distances).zip(0..farthest);
+        for ((offset, distance), i) in all {
+            let limit: &Lanes = lanes(limits, here, *offset);
+            for lane in 0..LANES {
+                found[lane] |= u16::from(*distance <= limit[lane]) & u16::from(i < in_sight[lane]);
+            }
+            if i % 8 == 7 && view_points & !bits(&found) == 0 {
+                break;
+            }
+        }
+        bits(&found)
+    }
+
+    /// The cells of the beam that are in sight, with their distances.
+    pub(crate) fn cells(&self, in_sight: u16) -> impl Iterator<Item = (&crate::StencilCell, f32)> {
+        self.beam.cells[..usize::from(in_sight)].iter().zip(self.distances.iter().copied())
+    }
+}
+
+fn bits(lanes: &[u16; LANES]) -> u16 {
+    lanes.iter().enumerate().fold(0, |bits, (lane, set)| bits | (set << lane))
+}
+
+fn as_f64(count: usize) -> f64 {
+    #[allow(clippy::cast_precision_loss, reason = "some thousand cells")]
+    let count = count as f64;
+    count
+}
+
+/// The values of a bordered raster at an offset from neighbouring view-points.
+#[inline(always)]
+fn lanes<T>(raster: &[T], here: usize, offset: isize) -> &[T; LANES] {
+    let at = here.wrapping_add_signed(offset);
+    let Some(lanes) = raster[at..].first_chunk() else { panic!("rasters have a border") };
+    lanes
+}

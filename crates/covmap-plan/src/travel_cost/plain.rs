@@ -1,0 +1,97 @@
+//! Dijkstra's algorithm as in the books, cell by cell: what the fast one is tested against.
+
+use super::steps::STEPS;
+use super::travel_costs;
+use covmap::{Cell, Grid};
+use nalgebra::Point2;
+use proptest::prelude::*;
+use std::f64::consts::SQRT_2;
+
+/// The way to a cell: its straight and diagonal steps, and the cell before it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Way {
+    straight: u32,
+    diagonal: u32,
+    previous: Option<Cell>,
+}
+
+impl Way {
+    fn length(&self) -> f64 {
+        f64::from(self.straight) + SQRT_2 * f64::from(self.diagonal)
+    }
+
+    fn and(self, from: Cell, dx: i32, dy: i32) -> Self {
+        let is_diagonal = dx != 0 && dy != 0;
+        Self {
+            straight: self.straight + u32::from(!is_diagonal),
+            diagonal: self.diagonal + u32::from(is_diagonal),
+            previous: Some(from),
+        }
+    }
+}
+
+/// The shortest ways; of equally short ones that from the cell that was done first.
+fn dijkstra(grid: &Grid, source: Cell, free: &[bool]) -> Vec<Option<Way>> {
+    let is_free = |cell: Cell| grid.index(cell).is_some_and(|i| free[i]);
+    let mut ways: Vec<Option<Way>> = vec![None; grid.len()];
+    let mut open = vec![grid.index(source).unwrap()];
+    ways[open[0]] = Some(Way { straight: 0, diagonal: 0, previous: None });
+    while !open.is_empty() {
+        let length = |index: usize| ways[index].unwrap().length();
+        let nearest = (0..open.len()).min_by(|a, b| {
+            length(open[*a]).total_cmp(&length(open[*b])).then(open[*a].cmp(&open[*b]))
+        });
+        let at = open.swap_remove(nearest.unwrap());
+        let cell = grid.cell(at);
+        for (dx, dy) in STEPS {
+            let is_diagonal = dx != 0 && dy != 0;
+            let beside = [cell.offset(dx, 0), cell.offset(0, dy)];
+            let passes =
+                is_free(cell.offset(dx, dy)) && (!is_diagonal || beside.into_iter().all(is_free));
+            if !passes {
+                continue;
+            }
+            let next = grid.index(cell.offset(dx, dy)).unwrap();
+            let way = ways[at].unwrap().and(cell, dx, dy);
+            if ways[next].is_none_or(|known| way.length() < known.length()) {
+                if ways[next].is_none() {
+                    open.push(next);
+                }
+                ways[next] = Some(way);
+            }
+        }
+    }
+    ways
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+    #[test]
+    fn ways_are_those_of_dijkstra(
+        width in 1..24usize, height in 1..24usize, blocked in 0..70u32,
+        dice in prop::collection::vec(0..100u32, 24 * 24), source in 0..24 * 24usize
+    ) {
+        let grid = Grid::new(Point2::origin(), 0.1, width, height).unwrap();
+        let free: Vec<bool> = dice[..grid.len()].iter().map(|d| *d >= blocked).collect();
+        let source = grid.cell(source % grid.len());
+        let ours = travel_costs(&grid, source, |i| free[i]);
+        let plain = dijkstra(&grid, source, &free);
+        for (index, way) in plain.iter().enumerate() {
+            let cell = grid.cell(index);
+            match (way, ours.cost(index)) {
+                (None, None) => prop_assert_eq!(ours.path_to(cell), None),
+                (Some(way), Some(cost)) => {
+                    prop_assert!((cost - 0.1 * way.length()).abs() < 1e-12);
+                    let path = ours.path_to(cell).unwrap();
+                    let (last, before) = (path.last(), path.iter().rev().nth(1));
+                    prop_assert_eq!(last.copied(), way.previous.map(|_| cell));
+                    let before = before.copied().or((!path.is_empty()).then_some(source));
+                    prop_assert_eq!(before, way.previous);
+                }
+                (way, cost) => prop_assert!(false, "{:?}: {:?} but {:?}", cell, way, cost),
+            }
+        }
+        let reached = plain.iter().filter(|way| way.is_some()).count();
+        prop_assert_eq!(ours.reached().count(), reached);
+    }
+}

@@ -1,0 +1,59 @@
+//! Sets of view-points, in groups of neighbours.
+
+use crate::gain::lanes::LANES;
+use covmap::Grid;
+
+/// A set of view-points. Each row of the grid is cut into groups of [`LANES`] neighbours; a bit
+/// for each.
+#[derive(Debug, Clone)]
+pub(crate) struct ViewPoints {
+    width: usize,
+    bits: Vec<u16>,
+}
+
+impl ViewPoints {
+    pub(crate) fn new(grid: &Grid) -> Self {
+        Self { width: grid.width(), bits: vec![0; grid.height() * groups(grid)] }
+    }
+
+    pub(crate) fn one(grid: &Grid, index: usize) -> Self {
+        let mut set = Self::new(grid);
+        set.insert(index);
+        set
+    }
+
+    /// Adds a view-point by its row-major index.
+    pub(crate) fn insert(&mut self, index: usize) {
+        let (group, lane) = place(self.width, index);
+        self.bits[group] |= 1 << lane;
+    }
+
+    /// The members of each group, row by row.
+    pub(crate) fn groups(&self) -> &[u16] {
+        &self.bits
+    }
+
+    /// The row-major indices of those members that `keep` leaves in each group, in order.
+    pub(crate) fn indices(&self, keep: impl Fn(usize) -> u16) -> Vec<usize> {
+        let mut indices = Vec::new();
+        let per_row = self.width.div_ceil(LANES);
+        for (group, bits) in self.bits.iter().enumerate().filter(|(_, bits)| **bits != 0) {
+            let first = group / per_row * self.width + group % per_row * LANES;
+            let kept = bits & keep(group);
+            indices
+                .extend((0..LANES).filter(|lane| kept >> lane & 1 == 1).map(|lane| first + lane));
+        }
+        indices
+    }
+}
+
+/// How many groups a row has.
+pub(crate) fn groups(grid: &Grid) -> usize {
+    grid.width().div_ceil(LANES)
+}
+
+/// The group of a view-point and its lane there, by its row-major index and the grid's width.
+pub(crate) fn place(width: usize, index: usize) -> (usize, usize) {
+    let (x, y) = (index % width, index / width);
+    (y * width.div_ceil(LANES) + x / LANES, x % LANES)
+}
