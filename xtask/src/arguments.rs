@@ -1,15 +1,19 @@
 //! What can be typed.
 
 mod bench;
+mod experiments;
+mod values;
 
 pub(crate) use bench::{Bench, Rows};
+pub(crate) use experiments::{Experiments, Figure, Table};
 
 use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_plan::Strategy;
-use nalgebra::{Isometry2, Vector2};
+use nalgebra::Isometry2;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
+use values::{every, every_degrees, named_file, range, resolution, start, while_driving};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -76,8 +80,8 @@ Examples:
   cargo xtask map sonar8/test1 --poses sonar8/test1_poses_corrected.txt
   cargo xtask map sonar8/test1 --sensor laser --resolution 0.05 --out out/laser
 
-Exit codes: 0 done; 2 bad input, or a folder that cannot be written. Ctrl-C ends it at once, and
-leaves DIR.partial.
+Exit codes: 0 done; 2 bad input, or a folder that cannot be written; 130 interrupted with Ctrl-C,
+with the map of what was read.
 ";
 
 const LOG_EXAMPLES: &str = "\
@@ -237,6 +241,14 @@ pub(crate) enum Command {
     /// Measures how fast decisions, updates and echoes are, as ratios.
     #[command(after_help = BENCH_EXAMPLES)]
     Bench(Bench),
+    /// Draws a figure of the paper from its own experiment.
+    #[command(after_help = experiments::FIGURE_EXAMPLES)]
+    Figure(Figure),
+    /// Makes a table of the paper from its own experiment.
+    Table(Table),
+    /// Runs all of the paper's experiments, draws all figures, and judges all claims.
+    #[command(after_help = experiments::PAPER_EXAMPLES)]
+    Paper(Experiments),
     /// Runs worlds × settings × strategies × starts × seeds, and goes on where it was stopped.
     #[command(after_help = CAMPAIGN_EXAMPLES)]
     Campaign(Campaign),
@@ -458,45 +470,4 @@ pub(crate) struct Collect {
     /// Print nothing but errors and notes
     #[arg(long)]
     pub(crate) quiet: bool,
-}
-
-fn named_file(text: &str) -> Result<(String, PathBuf), String> {
-    let (name, file) = text.split_once('=').ok_or("it is NAME=FILE")?;
-    Ok((name.to_owned(), file.into()))
-}
-
-fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {
-    let value: f64 = text.trim().parse().map_err(|_| "not a number".to_owned())?;
-    let good = (min..=max).contains(&value);
-    good.then_some(value).ok_or_else(|| format!("it must lie in [{min}, {max}] m"))
-}
-
-fn resolution(text: &str) -> Result<f64, String> {
-    number(text, 1e-3, 10.0)
-}
-
-fn while_driving(text: &str) -> Result<f64, String> {
-    number(text, 0.01, 1e6)
-}
-
-fn every(text: &str) -> Result<f64, String> {
-    number(text, 0.0, 1e3)
-}
-
-fn every_degrees(text: &str) -> Result<f64, String> {
-    number(text, 0.0, 360.0).map_err(|error| error.replace(" m", " degrees"))
-}
-
-fn range(text: &str) -> Result<f64, String> {
-    number(text, 1e-3, 100.0)
-}
-
-fn start(text: &str) -> Result<Isometry2<f64>, String> {
-    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
-    match numbers.as_deref() {
-        Ok(&[x, y, degrees]) if [x, y, degrees].iter().all(|v| v.is_finite() && v.abs() < 1e7) => {
-            Ok(Isometry2::new(Vector2::new(x, y), degrees.to_radians()))
-        }
-        _ => Err("three finite numbers are needed, as in 1.5,6,90".to_owned()),
-    }
 }

@@ -94,7 +94,7 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     Ok(if interrupt.is_pressed() { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
 }
 
-fn search(
+pub(crate) fn search(
     file: &FitFile,
     config: &Config,
     training: &[Example],

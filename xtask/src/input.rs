@@ -14,6 +14,9 @@ use std::path::{Path, PathBuf};
 /// The shipped default, so that it works in any folder.
 const DEFAULT_CONFIG: &str = include_str!("../../configs/b21r.ron");
 const DEFAULT_CONFIG_NAME: &str = "configs/b21r.ron";
+/// The paper without our additions.
+const PAPER_CONFIG: &str = include_str!("../../configs/paper.ron");
+const PAPER_CONFIG_NAME: &str = "configs/paper.ron";
 /// The robot of the logs in three files.
 const FOLDER_CONFIG: &str = include_str!("../../configs/sonar8.ron");
 const FOLDER_CONFIG_NAME: &str = "configs/sonar8.ron";
@@ -30,6 +33,11 @@ pub(crate) fn about<E: Display>(path: &Path) -> impl Fn(E) -> anyhow::Error {
 /// The configuration in a file, or the default; and its name for errors.
 pub(crate) fn config(file: Option<&Path>) -> Result<(Config, PathBuf)> {
     config_or(file, (DEFAULT_CONFIG_NAME, DEFAULT_CONFIG))
+}
+
+/// The configuration that is the paper's, as far as that can be.
+pub(crate) fn paper_config() -> Result<(Config, PathBuf)> {
+    config_or(None, (PAPER_CONFIG_NAME, PAPER_CONFIG))
 }
 
 /// The configuration in a file, or the default for a folder with a log in three files.

@@ -13,6 +13,8 @@ mod csv_file;
 mod explain;
 mod explain_picture;
 mod explore;
+mod figure;
+mod figures;
 mod fit;
 mod fit_charts;
 mod fit_file;
@@ -23,6 +25,7 @@ mod map;
 mod map_pictures;
 mod mapper;
 mod model;
+mod paper;
 mod pictures;
 mod progress;
 mod readings;
@@ -55,6 +58,9 @@ fn main() -> ExitCode {
         Command::Survey(arguments) => survey::run(&arguments),
         Command::Readings(arguments) => readings::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
+        Command::Figure(arguments) => figure::run(&arguments),
+        Command::Table(arguments) => figure::table(&arguments),
+        Command::Paper(arguments) => paper::run(&arguments),
         Command::Campaign(arguments) => campaign::command(&arguments),
         Command::Collect(arguments) => campaign::collect(&arguments),
     };

@@ -5,6 +5,7 @@ use crate::{csv_file, input, say};
 use anyhow::{Result, bail};
 use covmap_model::{Outcome, SensorModel};
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Model) -> Result<ExitCode> {
@@ -15,9 +16,17 @@ pub(crate) fn run(arguments: &Model) -> Result<ExitCode> {
     if range > usable {
         bail!("--range {range}: {} has a usable range of {usable} m", name.display());
     }
-    let distances = cell_distances(&model, range);
+    let distances = write_table(&arguments.out, &model, range)?;
     let bins = model.parameters().bins;
-    csv_file::write(&arguments.out, |table| {
+    say::line(format!("{}: {distances} distances, {bins} bins", arguments.out.display()));
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Writes what the model makes of an echo, and returns for how many distances.
+pub(crate) fn write_table(out: &Path, model: &SensorModel, range: f64) -> Result<usize> {
+    let distances = cell_distances(model, range);
+    let bins = model.parameters().bins;
+    csv_file::write(out, |table| {
         writeln!(table, "cell_distance,coverage,probability")?;
         let mut column = vec![0.0; bins];
         for distance in &distances {
@@ -29,13 +38,12 @@ pub(crate) fn run(arguments: &Model) -> Result<ExitCode> {
         }
         Ok(())
     })?;
-    say::line(format!("{}: {} distances, {bins} bins", arguments.out.display(), distances.len()));
-    Ok(ExitCode::SUCCESS)
+    Ok(distances.len())
 }
 
 /// From r/2 to .20 m behind the end cell, as in Fig. 3, in steps of r/10 \[m\]; farther if
 /// the echo updates cells farther behind.
-fn cell_distances(model: &SensorModel, range: f64) -> Vec<f64> {
+pub(crate) fn cell_distances(model: &SensorModel, range: f64) -> Vec<f64> {
     let resolution = model.resolution();
     let behind = model.parameters().behind.max(0.20);
     let last = range + 0.5 * resolution + behind + 1e-9 * resolution;

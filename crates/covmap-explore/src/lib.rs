@@ -34,6 +34,7 @@ mod robot;
 mod run;
 mod score;
 mod series;
+pub mod statistics;
 mod summary;
 mod trace;
 

@@ -7,6 +7,7 @@ mod bench;
 mod campaign;
 mod explain;
 mod explore;
+mod figures;
 mod fit;
 mod interrupt;
 mod map;

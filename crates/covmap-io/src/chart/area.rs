@@ -31,7 +31,8 @@ pub(super) fn room_upwards(_: &str) -> f32 {
 
 /// The width of the widest label.
 pub(super) fn widest(ticks: &[Tick]) -> f32 {
-    ticks.iter().map(|tick| text_width(&tick.label, TICK_SIZE)).fold(0.0, f32::max)
+    let lines = ticks.iter().flat_map(|tick| tick.label.lines());
+    lines.map(|line| text_width(line, TICK_SIZE)).fold(0.0, f32::max)
 }
 
 /// From an axis upwards to the far end of its labels.
@@ -39,8 +40,15 @@ pub(super) fn reach(ticks: &[Tick]) -> f32 {
     TICK + TICK_GAP + widest(ticks)
 }
 
+/// From one line of a label to the next.
+const LINE: f32 = TICK_SIZE * 1.25;
+
 /// From the x axis to the lower end of its labels.
-pub(super) const REACH_BELOW: f32 = TICK + TICK_GAP + TICK_SIZE;
+#[allow(clippy::cast_precision_loss, reason = "a few lines")]
+pub(super) fn reach_below(ticks: &[Tick]) -> f32 {
+    let lines = ticks.iter().map(|tick| tick.label.lines().count()).max().unwrap_or(1).max(1);
+    TICK + TICK_GAP + TICK_SIZE + (lines - 1) as f32 * LINE
+}
 
 impl Area {
     /// The place of a point, given the share of each axis.
@@ -56,11 +64,15 @@ impl Area {
     }
 
     /// Draws the frame, the ticks, and, if there is to be one, the grid.
-    pub(super) fn draw_frame(&self, scene: &mut Scene, y_ticks: &[Tick], grid: bool) {
+    pub(super) fn draw_frame(
+        &self,
+        scene: &mut Scene,
+        (x_ticks, y_ticks): (&[Tick], &[Tick]),
+        grid: bool,
+    ) {
         let ([left, top], [width, height]) = (self.at, self.size);
         let (right, bottom) = (left + width, top + height);
-        let x_ticks = self.x.ticks(width, room_across);
-        for tick in &x_ticks {
+        for tick in x_ticks {
             let x = self.place([tick.share, 0.0])[0];
             if grid && !tick.label.is_empty() {
                 scene.rule([x, top], [x, bottom], GRID);
@@ -70,12 +82,13 @@ impl Area {
             let y = self.place([0.0, tick.share])[1];
             scene.rule([left, y], [right, y], GRID);
         }
-        for tick in &x_ticks {
+        for tick in x_ticks {
             let x = self.place([tick.share, 0.0])[0];
             scene.rule([x, bottom], [x, bottom + tick_length(tick)], Rgb::FRAME);
-            let at = [x, bottom + TICK + TICK_GAP + 0.78 * TICK_SIZE];
-            if !tick.label.is_empty() {
-                scene.text(&tick.label, TICK_SIZE, at, Anchor::Middle, Rgb::INK);
+            let mut y = bottom + TICK + TICK_GAP + 0.78 * TICK_SIZE;
+            for line in tick.label.lines() {
+                scene.text(line, TICK_SIZE, [x, y], Anchor::Middle, Rgb::INK);
+                y += LINE;
             }
         }
         self.draw_side_ticks(scene, left, -1.0, y_ticks);

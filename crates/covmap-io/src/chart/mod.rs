@@ -65,6 +65,9 @@ pub struct ChartAxis {
     pub to: Option<f64>,
     /// Whether equal lengths are equal ratios.
     pub logarithmic: bool,
+    /// What the values 1, 2, 3, … are called, instead of round numbers, on the axis to the
+    /// right of a chart; a line break in a name begins a second line.
+    pub names: Vec<String>,
 }
 
 /// Points that belong together.
@@ -146,6 +149,13 @@ impl ChartAxis {
     /// A linear axis as long as its values need.
     pub fn new(label: impl Into<String>) -> Self {
         Self { label: label.into(), ..Self::default() }
+    }
+
+    /// An axis of things that have names: the values 1, 2, 3, …
+    pub fn named(label: impl Into<String>, names: Vec<String>) -> Self {
+        #[allow(clippy::cast_precision_loss, reason = "a few names")]
+        let to = names.len() as f64 + 0.5;
+        Self { from: Some(0.5), to: Some(to), names, ..Self::new(label) }
     }
 
     /// A logarithmic axis as long as its values need.

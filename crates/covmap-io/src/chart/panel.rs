@@ -1,6 +1,6 @@
 //! One panel of a figure: what it needs around its frame, and how it is drawn.
 
-use super::area::{Area, REACH_BELOW, clip, is_inside, reach, room_across, room_upwards, widest};
+use super::area::{Area, clip, is_inside, reach, reach_below, room_across, room_upwards, widest};
 use super::heat::{bar_reach, draw_bar};
 use super::marks::{Legend, Look};
 use super::scale::{Scale, Tick};
@@ -60,6 +60,8 @@ pub(super) struct Prepared<'a> {
     y_ticks: Vec<Tick>,
     /// How far a label of the x axis may reach beyond the end of the axis.
     overhang: f32,
+    /// From the x axis to the lower end of its labels.
+    below: f32,
     /// The scale of the colours, if there are any.
     value: Option<(Scale, Vec<Tick>)>,
 }
@@ -78,6 +80,20 @@ impl Panel {
             Self::Chart(chart) => (&chart.x, &chart.y),
             Self::HeatMap(map) => (&map.x, &map.y),
         }
+    }
+
+    /// What is written at the axis to the right, of a length: names, or round numbers.
+    fn x_ticks(&self, x: &Scale, length: f32) -> Vec<Tick> {
+        let (axis, _) = self.axes();
+        if axis.names.is_empty() {
+            return x.ticks(length, room_across);
+        }
+        #[allow(clippy::cast_precision_loss, reason = "a few names")]
+        let tick = |(index, name): (usize, &String)| {
+            let share = x.share(index as f64 + 1.0).filter(|share| is_inside([*share, 0.0]))?;
+            Some(Tick { share, label: name.clone() })
+        };
+        axis.names.iter().enumerate().filter_map(tick).collect()
     }
 
     /// Chooses the axes and what is written beside a frame of a height, in a panel of a width.
@@ -108,8 +124,10 @@ impl Panel {
         let heading = Heading::new((title, title_size), (subtitle, subtitle_size), width);
         let y_ticks = y.ticks(height, room_upwards);
         // Half of a label, some of which may reach into the white between panels.
-        let overhang = widest(&x.ticks(width, room_across)) / 2.0 - 6.0;
-        Prepared { panel: self, heading, legend, x, y, y_ticks, overhang, value }
+        let x_ticks = self.x_ticks(&x, width);
+        let overhang = widest(&x_ticks) / 2.0 - 6.0;
+        let below = reach_below(&x_ticks);
+        Prepared { panel: self, heading, legend, x, y, y_ticks, overhang, below, value }
     }
 }
 
@@ -186,7 +204,7 @@ impl Prepared<'_> {
             _ => 12.0,
         };
         let above = self.heading.height();
-        let below = REACH_BELOW + row(x) + self.legend.height;
+        let below = self.below + row(x) + self.legend.height;
         Margins {
             left: (reach(&self.y_ticks) + row(y)).max(self.overhang).ceil(),
             right: right.max(self.overhang).ceil(),
@@ -206,21 +224,23 @@ impl Prepared<'_> {
         self.heading.draw(scene, [left, top + margins.top - 8.0 - self.heading.height()]);
         let at = [left + margins.left, top + margins.top];
         let area = Area { at, size, x: self.x, y: self.y };
+        let x_ticks = self.panel.x_ticks(&self.x, size[0]);
+        let frame_ticks = (&x_ticks[..], &self.y_ticks[..]);
         match (self.panel, &self.value) {
             (Panel::HeatMap(map), Some((value, ticks))) => {
                 map.draw_cells(scene, &area, value);
-                area.draw_frame(scene, &self.y_ticks, false);
+                area.draw_frame(scene, frame_ticks, false);
                 draw_bar(scene, &area, map.color_map, ticks);
                 self.draw_value_name(scene, &area, map, ticks);
             }
             (Panel::Chart(chart), _) => {
-                area.draw_frame(scene, &self.y_ticks, true);
+                area.draw_frame(scene, frame_ticks, true);
                 chart.draw(scene, &area);
             }
             (Panel::HeatMap(_), None) => {}
         }
         let (x, y) = self.panel.axes();
-        let below = at[1] + size[1] + REACH_BELOW;
+        let below = at[1] + size[1] + self.below;
         let name = shorten(&x.label, LABEL_SIZE, size[0] + 24.0);
         let middle = at[0] + size[0] / 2.0;
         scene.text(&name, LABEL_SIZE, [middle, below + 17.0], Anchor::Middle, Rgb::INK);

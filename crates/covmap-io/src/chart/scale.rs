@@ -244,7 +244,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn axis(from: Option<f64>, to: Option<f64>, logarithmic: bool) -> ChartAxis {
-        ChartAxis { label: String::new(), from, to, logarithmic }
+        ChartAxis { from, to, logarithmic, ..ChartAxis::default() }
     }
 
     fn labels(from: f64, to: f64, logarithmic: bool) -> Vec<String> {

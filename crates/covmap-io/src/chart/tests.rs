@@ -172,6 +172,21 @@ fn number() -> impl Strategy<Value = f64> {
     ]
 }
 
+#[test]
+fn values_that_have_names_are_called_so() {
+    let names = vec!["CL".to_owned(), "IG_WIN\n(2.0)".to_owned()];
+    let points = vec![ChartPoint::new(1.0, 3.0), ChartPoint::new(2.0, 4.0)];
+    let series = vec![Series { name: "scans".into(), points, line: false, marks: true }];
+    let x = ChartAxis::named("strategy", names);
+    let chart = Chart { x, y: ChartAxis::new("scans"), series, ..Chart::default() };
+    let svg = chart.to_svg();
+    assert!(
+        ["CL", "IG_WIN", "(2.0)"].iter().all(|name| svg.contains(&format!(">{name}<"))),
+        "{svg}"
+    );
+    assert!(!svg.contains(">1.5<"));
+}
+
 fn any_axis() -> impl Strategy<Value = ChartAxis> {
     let end = || proptest::option::of(number());
     (".*", end(), end(), any::<bool>()).prop_map(|(label, from, to, logarithmic)| ChartAxis {
@@ -179,6 +194,7 @@ fn any_axis() -> impl Strategy<Value = ChartAxis> {
         from,
         to,
         logarithmic,
+        names: Vec::new(),
     })
 }
 

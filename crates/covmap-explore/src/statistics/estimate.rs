@@ -1,0 +1,134 @@
+//! A number that was measured, and how sure it is.
+
+use crate::Spread;
+use serde::{Deserialize, Serialize};
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// A number with its standard error.
+///
+/// # Formula
+/// ```text
+/// interval: value ± t(1 − (1 − level)/2; ν) · standard_error
+/// P(true ≤ bound): Student's t with ν degrees of freedom at (bound − value) / standard_error
+/// ```
+/// With few clusters the quantiles of a bootstrap are too narrow; Student's t with one degree
+/// of freedom less than there are clusters is not.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Its standard error, in the same unit.
+    pub standard_error: f64,
+    /// How many independent groups it rests on. With fewer than two nothing can be said of its
+    /// error.
+    pub groups: usize,
+}
+
+impl Estimate {
+    /// The mean of independent values; `None` for none.
+    pub fn of_mean(values: &[f64]) -> Option<Self> {
+        let Spread { n, mean, deviation, .. } = Spread::of(values)?;
+        #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
+        let standard_error = deviation.map_or(f64::INFINITY, |sd| sd / (n as f64).sqrt());
+        Some(Self { value: mean, standard_error, groups: n })
+    }
+
+    /// The central interval that holds the true value with a probability of `level`; `None`
+    /// with fewer than two groups.
+    pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
+        let quantile = self.student()?.inverse_cdf(0.5 + 0.5 * level);
+        let half = quantile * self.standard_error;
+        Some((self.value - half, self.value + half))
+    }
+
+    /// The p-value of "the true value is not below `bound`": small if it is below. 1 with
+    /// fewer than two groups.
+    pub fn p_below(&self, bound: f64) -> f64 {
+        self.student().map_or(1.0, |student| {
+            if self.standard_error > 0.0 {
+                student.cdf((self.value - bound) / self.standard_error)
+            } else {
+                // All resamples are alike.
+                f64::from(u8::from(self.value >= bound))
+            }
+        })
+    }
+
+    /// The p-value of "the true value is not above `bound`": small if it is above. 1 with
+    /// fewer than two groups.
+    pub fn p_above(&self, bound: f64) -> f64 {
+        Self { value: -self.value, ..*self }.p_below(-bound)
+    }
+
+    /// The p-value of two one-sided tests of "the true value is not between these bounds":
+    /// small if it is (equivalence).
+    pub fn p_between(&self, low: f64, high: f64) -> f64 {
+        self.p_above(low).max(self.p_below(high))
+    }
+
+    /// The p-value of "the true value lies between these bounds": small if it lies outside.
+    pub fn p_outside(&self, low: f64, high: f64) -> f64 {
+        (2.0 * self.p_below(low).min(self.p_above(high))).min(1.0)
+    }
+
+    fn student(&self) -> Option<StudentsT> {
+        let groups = u32::try_from(self.groups).ok().filter(|groups| *groups >= 2)?;
+        if !(self.value.is_finite() && self.standard_error.is_finite()) {
+            return None;
+        }
+        StudentsT::new(0.0, 1.0, f64::from(groups - 1)).ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_interval_of_a_mean_is_students() {
+        // 1 … 5: mean 3, s = 1.5811, t(.975; 4) = 2.7764.
+        let mean = Estimate::of_mean(&[1.0, 2.0, 3.0, 4.0, 5.0]).unwrap();
+        let (low, high) = mean.interval(0.95).unwrap();
+        assert!(
+            (mean.value - 3.0).abs() < 1e-12
+                && (mean.standard_error - std::f64::consts::FRAC_1_SQRT_2).abs() < 1e-6
+        );
+        assert!((low - 1.036_756).abs() < 1e-5 && (high - 4.963_243).abs() < 1e-5);
+    }
+
+    #[test]
+    fn p_values_are_those_of_students_t() {
+        // t = −2.7764 with 4 degrees of freedom: .025 to one side.
+        let estimate = Estimate { value: 3.0, standard_error: 1.0, groups: 5 };
+        assert!((estimate.p_below(3.0 + 2.776_445) - 0.025).abs() < 1e-6);
+        assert!((estimate.p_above(3.0 - 2.776_445) - 0.025).abs() < 1e-6);
+        assert!((estimate.p_below(3.0) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn equivalence_needs_both_sides() {
+        let near = Estimate { value: 1.02, standard_error: 0.02, groups: 5 };
+        assert!(near.p_between(0.8, 1.2) < 0.01 && near.p_outside(0.8, 1.2) > 0.99);
+        let vague = Estimate { standard_error: 0.3, ..near };
+        assert!(vague.p_between(0.8, 1.2) > 0.05 && vague.p_outside(0.8, 1.2) > 0.05);
+        let far = Estimate { value: 1.5, ..near };
+        assert!(far.p_between(0.8, 1.2) > 0.99 && far.p_outside(0.8, 1.2) < 0.01);
+    }
+
+    #[test]
+    fn one_group_says_nothing() {
+        let single = Estimate::of_mean(&[7.0]).unwrap();
+        assert_eq!(single.interval(0.95), None);
+        assert!(single.p_below(100.0) >= 1.0 && single.p_above(-100.0) >= 1.0);
+        assert_eq!(Estimate::of_mean(&[]), None);
+    }
+
+    #[test]
+    fn values_that_are_all_alike_are_certain() {
+        let alike = Estimate::of_mean(&[0.0; 4]).unwrap();
+        assert_eq!(alike.interval(0.95), Some((0.0, 0.0)));
+        assert!(
+            alike.p_below(0.1) < 1e-12 && alike.p_above(0.1) >= 1.0 && alike.p_below(0.0) >= 1.0
+        );
+    }
+}

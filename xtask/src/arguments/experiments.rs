@@ -1,0 +1,67 @@
+//! What can be typed for the paper's experiments.
+
+use clap::Args;
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+pub(super) const FIGURE_EXAMPLES: &str = "\
+DIR/figureN.svg and .png are the figure, DIR/figureN*.csv the numbers behind it. Figures 5, 6 and 7
+need campaigns, which are taken from DIR/campaigns as far as they are done there.
+
+Examples:
+  cargo xtask figure 1
+  cargo xtask figure 7 --quick --out out/quick
+";
+
+pub(super) const PAPER_EXAMPLES: &str = "\
+The folder that is written:
+  report.html               all figures, tables and verdicts, in one file
+  claims.json               the verdicts with their figures and tests
+  figure*.svg, .png, .csv   the figures, and the numbers behind them
+  campaigns/                the runs; begun again, only what is missing is run
+
+A claim is `reproduced`, `not reproduced` or `undecided`. configs/paper.ron decides; configs/b21r.ron
+is a second column.
+
+Examples:
+  cargo xtask paper --out out/paper
+  cargo xtask paper --quick --out out/quick
+
+Exit codes: 0 done, whatever the verdicts; 2 bad input, or a result that cannot be written; 130
+interrupted with Ctrl-C.
+";
+
+#[derive(Debug, Args)]
+pub(crate) struct Figure {
+    /// Which: 1, 2, 3, 5, 6 or 7
+    #[arg(value_parser = ["1", "2", "3", "5", "6", "7"])]
+    pub(crate) number: String,
+    #[command(flatten)]
+    pub(crate) common: Experiments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Table {
+    /// Which: there is only 1
+    #[arg(value_parser = ["1"])]
+    pub(crate) number: String,
+    #[command(flatten)]
+    pub(crate) common: Experiments,
+}
+
+/// How the paper's experiments are run.
+#[derive(Debug, Args)]
+pub(crate) struct Experiments {
+    /// Fewer seeds, coarser cells, smaller worlds: a look, not a result
+    #[arg(long)]
+    pub(crate) quick: bool,
+    /// So many runs at the same time [default: one for each core]
+    #[arg(long, value_name = "N")]
+    pub(crate) jobs: Option<NonZeroUsize>,
+    /// Where results go, and from where runs that are done are taken
+    #[arg(long, value_name = "DIR", default_value = "out/paper")]
+    pub(crate) out: PathBuf,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}

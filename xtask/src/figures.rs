@@ -1,0 +1,13 @@
+//! The figures of the paper, each from its own experiment.
+
+pub(crate) mod fig1;
+pub(crate) mod fig2;
+pub(crate) mod fig3;
+pub(crate) mod fig5;
+pub(crate) mod fig6;
+pub(crate) mod fig7;
+pub(crate) mod map_figure;
+pub(crate) mod output;
+pub(crate) mod partial_cells;
+
+pub(crate) use output::Output;

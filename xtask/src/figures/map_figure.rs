@@ -1,0 +1,94 @@
+//! Figures that are maps: pictures, and drawings that hold them.
+
+use super::output::Output;
+use crate::campaign::{NamedWorld, Paths};
+use crate::input::{self, about};
+use anyhow::Result;
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use covmap_io::{Key, Marker, Picture, Rgb, coverage_color, read_ron};
+use covmap_world::{Surface, World};
+use nalgebra::Point2;
+
+const PATH_WIDTH: f64 = 2.0;
+const SCAN_SIZE: f64 = 5.0;
+const START_SIZE: f64 = 16.0;
+/// The side of the cells of the truth behind a path [m].
+const SIDE: f64 = 0.05;
+
+/// A driven path with what it is.
+#[derive(Debug, Clone)]
+pub(crate) struct Trajectory {
+    pub(crate) title: String,
+    pub(crate) subtitle: String,
+    pub(crate) paths: Paths,
+}
+
+/// Draws a path in its world.
+pub(crate) fn write_trajectory(
+    output: &Output,
+    name: &str,
+    world: &NamedWorld,
+    trajectory: &Trajectory,
+) -> Result<()> {
+    let world = self::world(world)?;
+    let coverage = world.coverage(&world.grid(SIDE)?);
+    let points = |list: &[(f64, f64)]| -> Vec<Point2<f64>> {
+        list.iter().map(|(x, y)| Point2::new(*x, *y)).collect()
+    };
+    let (driven, scans) = (points(&trajectory.paths.driven), points(&trajectory.paths.scans));
+    let mut picture = Picture::new(*coverage.grid());
+    picture
+        .title(&trajectory.title)
+        .subtitle(&trajectory.subtitle)
+        .scale_bar()
+        .cells(&coverage, |coverage| coverage_color(Some(*coverage)))
+        .polyline(&driven, Rgb::BLUE, PATH_WIDTH)
+        .key(Key::Line(Rgb::BLUE), "trajectory")
+        .key(Key::Marker(Marker::Disc, Rgb::ORANGE), "measurement")
+        .key(Key::Marker(Marker::Disc, Rgb::GREEN), "start");
+    for scan in &scans {
+        picture.marker(*scan, Marker::Disc, Rgb::ORANGE, SCAN_SIZE);
+    }
+    if let Some(start) = driven.first() {
+        picture.marker(*start, Marker::Disc, Rgb::GREEN, START_SIZE);
+    }
+    write_picture(output, name, &picture)
+}
+
+/// The world of a campaign.
+pub(crate) fn world(named: &NamedWorld) -> Result<World> {
+    // Coverage does not depend on how a surface answers.
+    if named.file.extension().is_some_and(|extension| extension == "ron") {
+        let scenario = read_ron(&named.file)?;
+        let (turn, shift) = (named.turn.to_radians(), named.shift);
+        return input::moved(&scenario, turn, shift, (&named.file, Surface::Rough));
+    }
+    input::world(&named.file, Surface::Rough)
+}
+
+/// Writes a picture as `NAME.png`, and as a drawing that holds it, `NAME.svg`.
+pub(crate) fn write_picture(output: &Output, name: &str, picture: &Picture) -> Result<()> {
+    let png = output.path(&format!("{name}.png"));
+    picture.save(&png)?;
+    let bytes = std::fs::read(&png).map_err(about(&png))?;
+    let svg = output.path(&format!("{name}.svg"));
+    std::fs::write(&svg, holding(&bytes)).map_err(about(&svg))
+}
+
+/// A drawing of the size of a PNG, which holds it.
+fn holding(png: &[u8]) -> String {
+    // Width and height stand at fixed places in the header of every PNG.
+    let side = |at: usize| {
+        let bytes = png.get(at..at + 4).and_then(|b| b.try_into().ok()).unwrap_or([0; 4]);
+        u32::from_be_bytes(bytes)
+    };
+    let (width, height) = (side(16), side(20));
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{}\" height=\"{}\">\
+         <image width=\"{width}\" height=\"{height}\" href=\"data:image/png;base64,{}\"/></svg>\n",
+        width / 2,
+        height / 2,
+        STANDARD.encode(png)
+    )
+}

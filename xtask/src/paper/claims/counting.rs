@@ -1,0 +1,261 @@
+//! Section 5.1: coverage maps against scan counting. Claims 5–9 and 20.
+
+use super::{EXTENDED, ONCE, PATH, explored};
+use crate::paper::crossing::{Point, crossing};
+use crate::paper::runs::Runs;
+use crate::paper::trial::{Bound, Finding, Trial};
+use covmap_explore::statistics::{Estimate, Grouped, bootstrap};
+use covmap_plan::Strategy;
+use std::collections::BTreeMap;
+
+const UNCERTAIN: &str = "share_uncertain";
+const EXPLORED: &str = "share_explored";
+
+/// Extended counting with n*, in the corridor: the other count with a discount.
+pub(crate) fn with_n_star(runs: &Runs) -> Option<Strategy> {
+    let is = |s: &Strategy| {
+        matches!(s, Strategy::Count { half_distance: Some(_), .. }) && *s != EXTENDED
+    };
+    runs.strategies().into_iter().find(is)
+}
+
+/// Table 1: the share of uncertain cells.
+pub(crate) fn claim_5(runs: &Runs) -> Finding {
+    let units = runs.paired(&[Strategy::Cl, ONCE, EXTENDED], UNCERTAIN);
+    Finding::new(
+        5,
+        "Table 1, cells with H > .65: coverage maps at most .5 %, counting (n = 1) at least 10 %, extended counting between them",
+        vec![
+            explored(runs, &[Strategy::Cl]),
+            Trial::new("coverage maps: share with H > .65", units.mean(0), Bound::Below(0.005)),
+            Trial::new("counting, n = 1", units.mean(1), Bound::Above(0.10)),
+            Trial::new("extended counting less coverage maps", units.difference(2, 0), Bound::Above(0.0)),
+            Trial::new("extended counting less counting", units.difference(2, 1), Bound::Below(0.0)),
+        ],
+    )
+    .figure("extended counting, n = 50", units.mean(2))
+}
+
+/// Table 1: how much longer the paths are.
+pub(crate) fn claim_6(runs: &Runs) -> Finding {
+    let units = runs.paired(&[Strategy::Cl, ONCE, EXTENDED], PATH);
+    let finding = Finding::new(
+        6,
+        "Table 1, path against that of coverage maps (paper: .30, 1.02): counting (n = 1) in [.15, .6], extended counting (n = 50) in [.8, 1.25]",
+        vec![
+            explored(runs, &[Strategy::Cl]),
+            Trial::new("counting, n = 1", units.ratio(1, 0), Bound::Between(0.15, 0.6))
+                .confirming(),
+            Trial::new("extended counting, n = 50", units.ratio(2, 0), Bound::Between(0.8, 1.25))
+                .confirming(),
+        ],
+    );
+    let n_star = with_n_star(runs).map(|s| (s, runs.paired(&[Strategy::Cl, s], PATH).ratio(1, 0)));
+    n_star.into_iter().fold(finding, |f, (s, ratio)| f.figure(&format!("{s}, n*"), ratio))
+}
+
+/// Section 5.1: some cells are measured too often, others not often enough.
+pub(crate) fn claim_7(runs: &Runs) -> Finding {
+    let metric = |name: &str| runs.paired(&[EXTENDED], name);
+    let spread = runs.paired_by(&[EXTENDED], |run| {
+        run.value("measurements.sd") / run.value("measurements.mean")
+    });
+    let missed = runs.paired_by(&[EXTENDED], |run| 1.0 - run.value(EXPLORED));
+    Finding::new(
+        7,
+        "section 5.1: extended counting measures some cells too often and others not often enough",
+        vec![
+            explored(runs, &[EXTENDED]),
+            Trial::new(
+                "n = 50: standard deviation of the counts of a cell over their mean",
+                spread.mean(0),
+                Bound::Above(0.5),
+            ),
+            Trial::new(
+                "n = 50: share of cells that are not explored well enough",
+                missed.mean(0),
+                Bound::Above(0.01),
+            ),
+        ],
+    )
+    .figure("mean number of measurements of a cell", metric("measurements.mean").mean(0))
+    .figure("largest", metric("measurements.max").mean(0))
+    .figure("smallest", metric("measurements.min").mean(0))
+}
+
+/// Fig. 6: from which share of explored cells on CL's path is shorter.
+pub(crate) fn claim_8(runs: &Runs) -> Finding {
+    Finding::new(
+        8,
+        "Fig. 6: if more than 85 % of the cells are to be explored well enough, CL's path is shorter than that of extended counting (the share where the curves meet is at most .90)",
+        vec![
+            explored(runs, &[Strategy::Cl]),
+            Trial::new(
+                "share of explored cells where the curves meet, discounted counts",
+                meeting(runs, true),
+                Bound::Below(0.90),
+            ),
+        ],
+    )
+    .figure("the same, every beam counting fully", meeting(runs, false))
+    .figure("share that CL explores", runs.paired(&[Strategy::Cl], EXPLORED).mean(0))
+}
+
+/// The share of explored cells at which the curve of the counting runs has CL's path.
+fn meeting(runs: &Runs, discounted: bool) -> Option<Estimate> {
+    let mut starts: BTreeMap<usize, Vec<(bool, Point)>> = BTreeMap::new();
+    for run in &runs.runs {
+        let point = Point { path: run.value(PATH), share: run.value(EXPLORED) };
+        match run.strategy {
+            Strategy::Cl => starts.entry(run.start).or_default().push((true, point)),
+            Strategy::Count { half_distance, .. } if half_distance.is_some() == discounted => {
+                starts.entry(run.start).or_default().push((false, point));
+            }
+            _ => {}
+        }
+    }
+    let groups: Grouped<(bool, Point)> = starts.into_values().collect();
+    bootstrap(&groups, 2000, 6, |drawn| {
+        let of = |is_cl: bool| drawn.iter().filter(move |(cl, _)| *cl == is_cl).map(|(_, p)| *p);
+        crossing(&of(false).collect::<Vec<_>>(), &of(true).collect::<Vec<_>>())
+    })
+}
+
+/// Footnote 2: counting with n* explores nearly all.
+pub(crate) fn claim_9(runs: &Runs) -> Finding {
+    let n_star = with_n_star(runs);
+    let share = n_star.and_then(|strategy| runs.paired(&[strategy], EXPLORED).mean(0));
+    Finding::new(
+        9,
+        "footnote 2: counting up to n*, the largest number of measurements that a cell had when it first fulfilled H ≤ ε, explores nearly all cells (at least 95 %)",
+        vec![
+            explored(runs, &[Strategy::Cl]),
+            Trial::new(
+                n_star.map_or("n*".to_owned(), |s| format!("{s}: share of cells with H ≤ ε")),
+                share,
+                Bound::Above(0.95),
+            ),
+        ],
+    )
+    .figure("share that CL explores", runs.paired(&[Strategy::Cl], EXPLORED).mean(0))
+}
+
+/// Section 5.1: the map of CL is more accurate than that of counting once.
+pub(crate) fn claim_20(runs: &Runs) -> Finding {
+    let both = [Strategy::Cl, ONCE];
+    let difference = |metric: &str| runs.paired(&both, metric).difference(0, 1);
+    Finding::new(
+        20,
+        "section 5.1: the map of CL on coverage maps is more accurate than that of counting with n = 1",
+        vec![
+            explored(runs, &[Strategy::Cl]),
+            Trial::new(
+                "mean absolute error of the most likely coverage, CL less counting",
+                difference("mae_mode"),
+                Bound::Below(0.0),
+            ),
+        ],
+    )
+    .figure("mean log-likelihood of the truth, CL less counting [nats]", difference("mean_log_likelihood"))
+    .figure("CRPS, CL less counting", difference("crps"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::paper::runs::{made_up, series};
+    use crate::paper::trial::{Verdict, check};
+
+    fn table_1(uncertain: [f64; 3], path: [f64; 3]) -> Runs {
+        let row = |i: usize| {
+            vec![
+                ("completeness", 0.99),
+                ("share_uncertain", uncertain[i]),
+                ("path_length_m", path[i]),
+            ]
+        };
+        let rows = [row(0), row(1), row(2)];
+        series(&[("CL", &rows[0]), ("COUNT:1", &rows[1]), ("COUNT:50:2", &rows[2])])
+    }
+
+    #[test]
+    fn claim_5_is_table_1() {
+        let path = [90.0, 27.0, 91.0];
+        check(claim_5(&table_1([0.001, 0.21, 0.015], path)), Verdict::Reproduced);
+        check(claim_5(&table_1([0.02, 0.21, 0.05], path)), Verdict::NotReproduced);
+        check(claim_5(&Runs::default()), Verdict::Undecided);
+    }
+
+    #[test]
+    fn claim_6_is_confirmed_or_undecided() {
+        let shares = [0.0, 0.2, 0.01];
+        check(claim_6(&table_1(shares, [90.0, 27.0, 91.0])), Verdict::Reproduced);
+        check(claim_6(&table_1(shares, [90.0, 27.0, 300.0])), Verdict::Undecided);
+    }
+
+    #[test]
+    fn claim_7_needs_both_ends() {
+        let runs = |sd: f64, explored: f64| {
+            let row = [
+                ("completeness", 0.99),
+                ("measurements.sd", sd),
+                ("measurements.mean", 100.0),
+                ("share_explored", explored),
+            ];
+            series(&[("COUNT:50:2", &row)])
+        };
+        check(claim_7(&runs(80.0, 0.9)), Verdict::Reproduced);
+        check(claim_7(&runs(20.0, 0.9)), Verdict::NotReproduced);
+        check(claim_7(&Runs::default()), Verdict::Undecided);
+    }
+
+    fn fig_6(cl: (f64, f64)) -> Runs {
+        let mut runs = Runs::default();
+        for start in 0..4usize {
+            let name = |n: u32| format!("COUNT:{n}:2");
+            let add = |runs: &mut Runs, strategy: &str, path: f64, share: f64| {
+                let values =
+                    [("path_length_m", path), ("share_explored", share), ("completeness", 0.99)];
+                runs.runs.extend(made_up(&[(strategy, start, 1, &values)]).runs);
+            };
+            for n in 1..=10u32 {
+                #[allow(clippy::cast_precision_loss, reason = "small")]
+                let path = 10.0 * f64::from(n) + start as f64;
+                add(&mut runs, &name(n), path, f64::from(n) / 10.0);
+            }
+            #[allow(clippy::cast_precision_loss, reason = "small")]
+            add(&mut runs, "CL", cl.0 + start as f64, cl.1);
+        }
+        runs
+    }
+
+    #[test]
+    fn claim_8_is_where_the_curves_meet() {
+        check(claim_8(&fig_6((60.0, 0.99))), Verdict::Reproduced);
+        check(claim_8(&fig_6((99.0, 0.99))), Verdict::NotReproduced);
+        check(claim_8(&Runs::default()), Verdict::Undecided);
+    }
+
+    #[test]
+    fn claim_9_is_about_the_other_count() {
+        let runs = |share: f64| {
+            let cl = [("completeness", 0.99), ("share_explored", 1.0)];
+            let n_star = [("completeness", 0.99), ("share_explored", share)];
+            series(&[("CL", &cl), ("COUNT:50:2", &cl), ("COUNT:93:2", &n_star)])
+        };
+        check(claim_9(&runs(0.99)), Verdict::Reproduced);
+        check(claim_9(&runs(0.80)), Verdict::NotReproduced);
+        check(claim_9(&runs(0.951)), Verdict::Undecided);
+    }
+
+    #[test]
+    fn claim_20_is_void_if_the_runs_explored_nothing() {
+        let runs = |completeness: f64, cl: f64| {
+            let row = |error: f64| [("completeness", completeness), ("mae_mode", error)];
+            series(&[("CL", &row(cl)), ("COUNT:1", &row(0.2))])
+        };
+        check(claim_20(&runs(0.99, 0.1)), Verdict::Reproduced);
+        check(claim_20(&runs(0.99, 0.3)), Verdict::NotReproduced);
+        check(claim_20(&runs(0.10, 0.1)), Verdict::Undecided);
+    }
+}

@@ -1,0 +1,83 @@
+//! Which campaigns the figures and claims need, and how they are made quick.
+
+use super::runs::Runs;
+use super::session::{Series, Session};
+use crate::campaign::{Campaign, Setting, Starts};
+use anyhow::Result;
+use covmap_plan::Strategy;
+use std::path::Path;
+
+/// n* is not looked for beyond four times the paper's 130.
+const MOST_COUNTS: f64 = 520.0;
+
+/// A quick run ends after so many scans.
+pub(super) const QUICK_SCANS: usize = 1000;
+
+/// The two configurations: the first decides the verdicts.
+pub(crate) const PAPER: &str = "paper";
+pub(crate) const B21R: &str = "b21r";
+
+/// The campaign of a figure, from its file; or its quick variant, whose runs are cut short.
+pub(crate) fn campaign(name: &str, quick: bool) -> Result<Campaign> {
+    let variant = if quick { "-quick" } else { "" };
+    let mut campaign = Campaign::read(Path::new(&format!("configs/{name}{variant}.ron")))?;
+    if quick {
+        campaign.settings.iter_mut().for_each(|setting| setting.max_scans = Some(QUICK_SCANS));
+    }
+    Ok(campaign)
+}
+
+impl Series {
+    /// The name of the setting with a configuration that measures at view-points only, or while
+    /// driving.
+    pub(crate) fn setting(&self, config: &str, driving: bool) -> Option<&Setting> {
+        self.campaign.settings.iter().find(|setting| {
+            let stem = setting.config.file_stem().unwrap_or_default();
+            stem == config && setting.while_driving.is_some() == driving
+        })
+    }
+
+    /// The runs of such a setting; none if there is none.
+    pub(crate) fn runs(&self, config: &str, driving: bool) -> Runs {
+        let setting = self.setting(config, driving);
+        setting.map_or_else(Runs::default, |setting| {
+            Runs::of(&self.campaign, &setting.name, &self.records)
+        })
+    }
+}
+
+/// Extended counting with n* of footnote 2, in the worlds and with the settings of Table 1: the
+/// largest discounted number of measurements that a cell had when CL first explored it.
+pub(crate) fn n_star(session: &Session<'_>, table_1: &Series) -> Result<Series> {
+    let mut campaign = table_1.campaign.clone();
+    campaign.name = format!("{}-n-star", campaign.name);
+    let mut settings = Vec::new();
+    for setting in &table_1.campaign.settings {
+        let runs = Runs::of(&table_1.campaign, &setting.name, &table_1.records);
+        let needed = runs.values(Strategy::Cl, "measurements.until_explored_discounted");
+        let times = needed.into_iter().fold(1.0, f64::max).ceil().min(MOST_COUNTS);
+        // The same count as in Table 1 has been run already.
+        let times = if (times - 50.0).abs() < 0.5 { 51.0 } else { times };
+        let strategy = Strategy::Count { times, half_distance: Some(2.0) };
+        settings.push(Setting { strategies: Some(vec![strategy]), ..setting.clone() });
+    }
+    // So many scans take long: one seed from every start.
+    campaign.seeds.count = 1;
+    campaign.settings = settings;
+    campaign.strategies = Vec::new();
+    session.run(campaign)
+}
+
+/// What changes when one of our readings does, in a small world.
+pub(crate) fn ablation(session: &Session<'_>) -> Result<Series> {
+    let mut campaign = campaign("ablation", false)?;
+    if session.quick {
+        campaign.name.push_str("-quick");
+        campaign.starts = Starts::Given;
+        // In coarse cells all the same.
+        campaign.settings.retain(|setting| !setting.overrides.contains_key("resolution"));
+        campaign.worlds.iter_mut().for_each(|world| world.resolution = Some(0.2));
+        campaign.settings.iter_mut().for_each(|setting| setting.max_scans = Some(QUICK_SCANS));
+    }
+    session.run(campaign)
+}

@@ -1,0 +1,220 @@
+//! The runs of one setting of a campaign, paired by start and seed.
+
+use crate::campaign::{Campaign, RunRecord, Value};
+use covmap_explore::statistics::{Estimate, Grouped, bootstrap};
+use covmap_plan::Strategy;
+use std::collections::BTreeMap;
+
+/// So often starts are resampled, and with which seed.
+const RESAMPLES: usize = 2000;
+const SEED: u64 = 2003;
+
+/// One run.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Run {
+    pub(crate) world: String,
+    pub(crate) strategy: Strategy,
+    pub(crate) start: usize,
+    pub(crate) seed: u64,
+    pub(crate) values: BTreeMap<String, f64>,
+}
+
+/// Runs with the same configuration and the same way to measure.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Runs {
+    pub(crate) runs: Vec<Run>,
+}
+
+/// One unit of a paired comparison: the same start and seed with several strategies, in their
+/// order. Units are grouped by start.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Units(pub(crate) Grouped<Vec<f64>>);
+
+impl Run {
+    /// A number of the run; NaN if it has none of this name.
+    pub(crate) fn value(&self, metric: &str) -> f64 {
+        self.values.get(metric).copied().unwrap_or(f64::NAN)
+    }
+}
+
+impl Runs {
+    /// The runs of a campaign's setting, from what was recorded.
+    pub(crate) fn of(campaign: &Campaign, setting: &str, records: &[RunRecord]) -> Self {
+        let own = campaign.settings.iter().filter_map(|s| s.strategies.as_ref()).flatten();
+        let names: BTreeMap<String, Strategy> =
+            campaign.strategies.iter().chain(own).map(|s| (s.to_string(), *s)).collect();
+        let run = |record: &RunRecord| {
+            let key = &record.key;
+            let number = |(name, value): (&String, &Value)| match value {
+                Value::Number(number) => Some((name.clone(), *number)),
+                Value::Text(_) => None,
+            };
+            let mut values: BTreeMap<String, f64> =
+                record.values.iter().filter_map(number).collect();
+            values.extend(record.times.iter().map(|(name, time)| (name.clone(), *time)));
+            let strategy = *names.get(&key.strategy)?;
+            let (world, start, seed) = (key.world.clone(), key.start, key.seed);
+            Some(Run { world, strategy, start, seed, values })
+        };
+        let mine = records.iter().filter(|record| record.key.setting == setting);
+        Self { runs: mine.filter_map(run).collect() }
+    }
+
+    /// The worlds, in the order of the campaign.
+    pub(crate) fn worlds(&self) -> Vec<String> {
+        let mut worlds: Vec<String> = Vec::new();
+        for run in &self.runs {
+            if !worlds.contains(&run.world) {
+                worlds.push(run.world.clone());
+            }
+        }
+        worlds
+    }
+
+    /// The runs in one world.
+    pub(crate) fn in_world(&self, world: &str) -> Self {
+        Self { runs: self.runs.iter().filter(|run| run.world == world).cloned().collect() }
+    }
+
+    /// The strategies, in the order of the campaign.
+    pub(crate) fn strategies(&self) -> Vec<Strategy> {
+        let mut strategies: Vec<Strategy> = Vec::new();
+        for run in &self.runs {
+            if !strategies.contains(&run.strategy) {
+                strategies.push(run.strategy);
+            }
+        }
+        strategies
+    }
+
+    /// The runs of one strategy.
+    pub(crate) fn with(&self, strategy: Strategy) -> impl Iterator<Item = &Run> {
+        self.runs.iter().filter(move |run| run.strategy == strategy)
+    }
+
+    /// The numbers of a metric for one strategy.
+    pub(crate) fn values(&self, strategy: Strategy, metric: &str) -> Vec<f64> {
+        self.with(strategy).map(|run| run.value(metric)).filter(|v| v.is_finite()).collect()
+    }
+
+    /// A metric of several strategies, by unit; units that lack one of them are left out.
+    pub(crate) fn paired(&self, strategies: &[Strategy], metric: &str) -> Units {
+        self.paired_by(strategies, |run| run.value(metric))
+    }
+
+    /// A number of the runs of several strategies, by unit.
+    pub(crate) fn paired_by(&self, strategies: &[Strategy], of: impl Fn(&Run) -> f64) -> Units {
+        let mut units: BTreeMap<(usize, &str, u64), Vec<Option<f64>>> = BTreeMap::new();
+        for run in &self.runs {
+            for (place, _) in strategies.iter().enumerate().filter(|(_, s)| **s == run.strategy) {
+                let unit = units.entry((run.start, &run.world, run.seed));
+                let unit = unit.or_insert_with(|| vec![None; strategies.len()]);
+                unit[place] = Some(of(run)).filter(|value| value.is_finite());
+            }
+        }
+        let mut groups: BTreeMap<usize, Vec<Vec<f64>>> = BTreeMap::new();
+        for ((start, ..), values) in units {
+            if let Some(values) = values.into_iter().collect::<Option<Vec<f64>>>() {
+                groups.entry(start).or_default().push(values);
+            }
+        }
+        Units(groups.into_values().collect())
+    }
+}
+
+impl Units {
+    /// A statistic of the units with its error, by resampling starts.
+    pub(crate) fn estimate(
+        &self,
+        statistic: impl Fn(&[&Vec<f64>]) -> Option<f64>,
+    ) -> Option<Estimate> {
+        bootstrap(
+            &self.0,
+            RESAMPLES,
+            SEED,
+            |units| {
+                if units.is_empty() { None } else { statistic(units) }
+            },
+        )
+    }
+
+    /// The mean of the strategy at a place.
+    pub(crate) fn mean(&self, place: usize) -> Option<Estimate> {
+        self.estimate(|units| Some(mean(units, place)))
+    }
+
+    /// The ratio of two means, that at the place `a` over that at `b`.
+    pub(crate) fn ratio(&self, a: usize, b: usize) -> Option<Estimate> {
+        self.estimate(|units| Some(mean(units, a) / mean(units, b)))
+    }
+
+    /// The mean paired difference, that at the place `a` less that at `b`.
+    pub(crate) fn difference(&self, a: usize, b: usize) -> Option<Estimate> {
+        self.estimate(|units| Some(mean(units, a) - mean(units, b)))
+    }
+}
+
+/// The mean over units of what is at a place.
+pub(crate) fn mean(units: &[&Vec<f64>], place: usize) -> f64 {
+    #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
+    let n = units.len() as f64;
+    units.iter().map(|unit| unit[place]).sum::<f64>() / n
+}
+
+/// A run for tests: strategy, start, seed and numbers by name.
+#[cfg(test)]
+pub(crate) type Row<'a> = (&'a str, usize, u64, &'a [(&'a str, f64)]);
+
+/// Runs for tests.
+#[cfg(test)]
+pub(crate) fn made_up(rows: &[Row<'_>]) -> Runs {
+    let run = |(strategy, start, seed, values): &Row<'_>| Run {
+        world: "apartment".into(),
+        strategy: strategy.parse().unwrap(),
+        start: *start,
+        seed: *seed,
+        values: values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+    };
+    Runs { runs: rows.iter().map(run).collect() }
+}
+
+/// A series for tests: for each strategy and metric a mean, with a small spread over four starts
+/// and two seeds.
+#[cfg(test)]
+pub(crate) fn series(strategies: &[(&str, &[(&str, f64)])]) -> Runs {
+    let mut runs = Vec::new();
+    for (strategy, values) in strategies {
+        for start in 0..4usize {
+            for seed in 1..=2u64 {
+                #[allow(clippy::cast_precision_loss, reason = "small numbers")]
+                let spread = 1.0 + 0.01 * ((start as f64) - 1.5) + 0.004 * (seed as f64 - 1.5);
+                let values: Vec<(&str, f64)> =
+                    values.iter().map(|(name, value)| (*name, value * spread)).collect();
+                runs.extend(made_up(&[(*strategy, start, seed, &values)]).runs);
+            }
+        }
+    }
+    Runs { runs }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn runs_are_paired_by_start_and_seed_and_unpaired_ones_left_out() {
+        let rows: [Row<'_>; 5] = [
+            ("CL", 0, 1, &[("scans", 10.0)]),
+            ("IG", 0, 1, &[("scans", 4.0)]),
+            ("CL", 1, 1, &[("scans", 20.0)]),
+            ("IG", 1, 1, &[("scans", 6.0)]),
+            ("CL", 2, 1, &[("scans", 900.0)]),
+        ];
+        let runs = made_up(&rows);
+        let units = runs.paired(&[Strategy::Cl, Strategy::Ig], "scans");
+        assert_eq!(units.0, [vec![vec![10.0, 4.0]], vec![vec![20.0, 6.0]]]);
+        assert!((units.ratio(0, 1).unwrap().value - 3.0).abs() < 1e-12);
+        assert!((units.difference(1, 0).unwrap().value + 10.0).abs() < 1e-12);
+        assert!(runs.paired(&[Strategy::Cl], "path").mean(0).is_none());
+    }
+}

@@ -1,0 +1,91 @@
+//! Tables of the report beyond the paper's: accuracy, cost, and what each reading does.
+
+use super::runs::Runs;
+use super::session::Series;
+use super::trial::{digits, shown};
+use covmap_plan::Strategy;
+
+/// A table with its columns.
+pub(super) type Table = (Vec<&'static str>, Vec<Vec<String>>);
+
+/// How accurate the final maps are, against the exact truth.
+pub(super) fn accuracy(runs: &Runs) -> Table {
+    let metrics = [
+        ("log-likelihood [nats]", "mean_log_likelihood"),
+        ("CRPS", "crps"),
+        ("error, free", "mae_free"),
+        ("error, partial", "mae_partial"),
+        ("error, solid", "mae_solid"),
+        ("completeness", "completeness"),
+        ("wall recall", "wall_recall"),
+        ("phantoms", "phantom"),
+        ("explored", "share_explored"),
+        ("bumps", "bumps"),
+    ];
+    of_metrics(runs, &metrics)
+}
+
+/// What a run costs, and what a scan and a metre bring.
+pub(super) fn cost(runs: &Runs) -> Table {
+    let columns = [
+        "strategy",
+        "runs",
+        "scans",
+        "path [m]",
+        "cells explored per scan",
+        "cells explored per metre",
+        "decision [ms]",
+        "run [s]",
+    ];
+    let row = |strategy: &Strategy| {
+        let number = |of: &dyn Fn(&super::runs::Run) -> f64| {
+            let mean = runs.paired_by(&[*strategy], of).mean(0);
+            mean.map_or("–".to_owned(), |mean| digits(mean.value))
+        };
+        let cells =
+            |run: &super::runs::Run| run.value("share_explored") * run.value("observable_cells");
+        vec![
+            strategy.to_string(),
+            runs.with(*strategy).count().to_string(),
+            number(&|run| run.value("scans")),
+            number(&|run| run.value("path_length_m")),
+            number(&|run| cells(run) / run.value("scans")),
+            number(&|run| cells(run) / run.value("path_length_m")),
+            number(&|run| 1e3 * run.value("deciding_seconds") / run.value("decisions")),
+            number(&|run| run.value("seconds")),
+        ]
+    };
+    (columns.to_vec(), runs.strategies().iter().map(row).collect())
+}
+
+/// What becomes of the runs when one reading changes.
+pub(super) fn ablation(series: &Series) -> Table {
+    let columns =
+        ["setting", "strategy", "scans", "path [m]", "completeness", "wall recall", "explored"];
+    let metrics = ["scans", "path_length_m", "completeness", "wall_recall", "share_explored"];
+    let rows = series.campaign.settings.iter().flat_map(|setting| {
+        let runs = Runs::of(&series.campaign, &setting.name, &series.records);
+        let row = |strategy: Strategy| {
+            let mean = |metric: &&str| {
+                let mean = runs.paired(&[strategy], metric).mean(0);
+                mean.map_or("–".to_owned(), |mean| digits(mean.value))
+            };
+            let names = [setting.name.clone(), strategy.to_string()];
+            names.into_iter().chain(metrics.iter().map(mean)).collect()
+        };
+        runs.strategies().into_iter().map(row).collect::<Vec<Vec<String>>>()
+    });
+    (columns.to_vec(), rows.collect())
+}
+
+fn of_metrics(runs: &Runs, metrics: &[(&'static str, &str)]) -> Table {
+    let columns = ["strategy"].into_iter().chain(metrics.iter().map(|(name, _)| *name)).collect();
+    let row = |strategy: &Strategy| {
+        let mean = |(_, metric): &(&str, &str)| {
+            let mean = runs.paired(&[*strategy], metric).mean(0);
+            mean.map_or("–".to_owned(), |mean| shown(Some(mean.value), mean.interval(0.95)))
+        };
+        [strategy.to_string()].into_iter().chain(metrics.iter().map(mean)).collect()
+    };
+    (columns, runs.strategies().iter().map(row).collect())
+}
