@@ -121,8 +121,8 @@ Example:
 const COMPARE_EXAMPLES: &str = "\
 FIT.ron is a file for `fit`. Every method is tuned on `training` with `evaluations` maps, once for its
 own posteriors and once for a calibration table, and checked on `held_out`; then the other way
-round. The methods: coverage maps unfitted, with γ and σ fitted, and with all of `axes` fitted; log-odds
-occupancy; Beta counting; a forward model on the same histograms (CRM); two constants.
+round. The methods: coverage maps unfitted, with γ and σ fitted, with all of `axes` fitted, and those
+read with a prior; log-odds occupancy; Beta counting; a forward model on the same histograms (CRM); two constants.
 Intervals come from resampling blocks of the trajectories.
 
 The folder that is written: compare.csv, and compare.json with the tuned parameters.

@@ -15,6 +15,11 @@ use rayon::prelude::*;
 /// So many beams of groups are evaluated at once, at most: bounds the memory.
 const PORTION: usize = 1 << 17;
 
+/// So many rows of groups, or groups, are worked at by one thread at least: to wake another one
+/// up takes longer than to look through them.
+const ROWS: usize = 8;
+const GROUPS: usize = 4096;
+
 /// One beam of a group of view-points: which of them are up to date, bit by bit.
 #[derive(Debug, Clone, Copy, Default)]
 struct State {
@@ -129,7 +134,8 @@ impl BeamCache {
             .zip(self.states.par_chunks_mut(per_row * beams))
             .zip(self.in_sight.par_chunks_mut(per_row * beams))
             .zip(wanted.groups().par_chunks(per_row))
-            .enumerate();
+            .enumerate()
+            .with_min_len(ROWS);
         let (grid, cones, arch) = (&self.grid, &self.cones, self.arch);
         rows.for_each_init(Ahead::new, |ahead, (y, (((groups, states), in_sight), wanted))| {
             if groups.iter().zip(wanted).any(|(group, wanted)| wanted & !group.sight != 0) {
@@ -173,7 +179,8 @@ impl BeamCache {
                     ahead,
                 })
             };
-            let mut rows: Vec<Row> = rows.par_iter().map_init(Ahead::new, look).collect();
+            let mut rows: Vec<Row> =
+                rows.par_iter().with_min_len(ROWS).map_init(Ahead::new, look).collect();
             self.sweep.run(self.arch, cells, &mut rows);
             for row in rows {
                 for (unit, gains) in row.units.iter().zip(row.gains) {
@@ -190,7 +197,8 @@ impl BeamCache {
             .zip(&mut self.groups)
             .zip(self.gain.par_chunks(beams))
             .zip(self.states.par_chunks(beams))
-            .zip(wanted.groups());
+            .zip(wanted.groups())
+            .with_min_len(GROUPS);
         averages.for_each(|((((mean, group), gains), states), wanted)| {
             if wanted & !group.gain != 0 {
                 *mean = average(gains);

@@ -336,6 +336,11 @@ impl Planner {
     /// Chooses the next view-point for a robot in the cell `from`; `None` if there is no
     /// candidate: nothing is open, and no passage is left to try.
     pub fn choose(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
+        // On a thread of the pool, what shares its work out need not wait for other threads.
+        rayon::scope(|_| self.choose_here(map, from))
+    }
+
+    fn choose_here(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
         let candidates = self
             .windowed_candidates(map, from)
             .or_else(|| self.candidates_beyond_a_passage(from))?;

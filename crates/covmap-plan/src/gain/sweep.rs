@@ -53,6 +53,10 @@ pub(crate) struct Row {
 /// So many units of a row are prepared and then summed.
 const AT_ONCE: usize = 16;
 
+/// Fewer units than this are worked at by one thread: for each ring another one is woken up twice,
+/// which took more than half of the time of an exploration by CL, whose reports have few units.
+const SHARED: usize = 1024;
+
 /// Which readings of a block of cells are asked for.
 const FRONT: u8 = 1;
 const NEAR: u8 = 2;
@@ -103,20 +107,21 @@ impl Sweep {
             return;
         };
         rows.iter_mut().for_each(|row| row.gains = vec![[0.0; LANES]; row.units.len()]);
+        let units: usize = rows.iter().map(|row| row.units.len()).sum();
+        let together = if units < SHARED { usize::MAX } else { 1 };
         // Rows of planes from `low` − border on; those outside of the grid stay 0.
         let mut planes = vec![0.0f32; (high - low + 1 + 2 * self.border) * self.row];
         for (ring, runs) in self.rings.iter().zip(&self.runs) {
             let asked = self.asked(ring, runs, rows, low, high);
             let blocks = self.blocks();
-            planes.par_chunks_mut(self.row).zip(asked.par_chunks(blocks)).enumerate().for_each(
-                |(y, (planes, asked))| {
-                    let y = (y + low).checked_sub(self.border);
-                    if let Some(y) = y.filter(|y| *y < self.grid.height()) {
-                        arch.dispatch(Fill { sweep: self, ring, cells, y, asked, planes });
-                    }
-                },
-            );
-            rows.par_iter_mut().for_each(|row| {
+            let filled = planes.par_chunks_mut(self.row).zip(asked.par_chunks(blocks)).enumerate();
+            filled.with_min_len(together).for_each(|(y, (planes, asked))| {
+                let y = (y + low).checked_sub(self.border);
+                if let Some(y) = y.filter(|y| *y < self.grid.height()) {
+                    arch.dispatch(Fill { sweep: self, ring, cells, y, asked, planes });
+                }
+            });
+            rows.par_iter_mut().with_min_len(together).for_each(|row| {
                 arch.dispatch(Sum { sweep: self, ring, planes: &planes, low, row });
             });
         }
