@@ -186,7 +186,8 @@ impl BeamCache {
                 for (unit, gains) in row.units.iter().zip(row.gains) {
                     let group = row.y * per_row + unit.group;
                     let at = group * beams + unit.beam;
-                    self.gain[at] = gains;
+                    #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for its size")]
+                    (self.gain[at] = gains.map(|gain| gain as f32));
                     self.states[at].gain |= wanted.groups()[group];
                 }
             }

@@ -1,5 +1,6 @@
 //! What the planner keeps of the map, laid out for the beams of many view-points.
 
+use crate::gain::evidence::Prior;
 use crate::gain::lanes::{LANES, Lanes};
 use crate::{PlannerParameters, Stencil};
 use covmap::{Cell, CoverageMap, Grid, MAX_BINS, bin_coverage};
@@ -22,18 +23,13 @@ pub(crate) struct Cells {
     reflection_of: Vec<f64>,
     /// Bordered: ρ.
     reflections: Vec<f64>,
-    blocks: Vec<Block>,
+    /// In blocks of [`LANES`] neighbouring cells: entropies \[nats\], and 1 for a cell that a
+    /// measurement can change, else 0.
+    entropies: Vec<Lanes>,
+    changeable: Vec<Lanes>,
+    /// For every block h, and ĥ of [`Prior`], of every bin.
     h: Vec<Lanes>,
-    u: Vec<Lanes>,
-}
-
-/// What is kept of [`LANES`] neighbouring cells beside their histograms.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Block {
-    /// Their entropies \[nats\].
-    pub(crate) entropy: Lanes,
-    /// 1 for a cell that a measurement can change, else 0.
-    pub(crate) changeable: Lanes,
+    tilt: Vec<Lanes>,
 }
 
 /// Codes past the last bin.
@@ -57,7 +53,7 @@ impl Cells {
         // Lanes past the last cell of a row read on.
         let bordered = bordered + LANES;
         let blocks = grid.height() * grid.width().div_ceil(LANES);
-        let block = Block { entropy: [0.0; LANES], changeable: [0.0; LANES] };
+        let none = [0.0; LANES];
         let mut cells = Self {
             grid,
             bins,
@@ -66,10 +62,11 @@ impl Cells {
             limits: vec![0.0; bordered],
             reflection_of,
             reflections: vec![0.0; bordered],
-            blocks: vec![block; blocks],
+            entropies: vec![none; blocks],
+            changeable: vec![none; blocks],
             // Past the last cell of a row any histogram will do, if its numbers are tame.
             h: vec![[1.0; LANES]; blocks * bins],
-            u: vec![[0.0; LANES]; blocks * bins],
+            tilt: vec![none; blocks * bins],
         };
         if let Ok(unknown) = CoverageMap::new(grid, bins) {
             grid.cells().for_each(|cell| {
@@ -95,10 +92,11 @@ impl Cells {
         map.read_posterior(cell, posterior);
         let (block, lane) = self.block_of(index);
         let rows = block * self.bins..(block + 1) * self.bins;
-        let (h, u) = (&mut self.h[rows.clone()], &mut self.u[rows]);
-        for ((h, u), p) in h.iter_mut().zip(u).zip(posterior.iter()) {
+        let entropy = -posterior.iter().map(|p| p * libm::log(*p)).sum::<f64>();
+        let (h, tilt) = (&mut self.h[rows.clone()], &mut self.tilt[rows]);
+        for ((h, tilt), p) in h.iter_mut().zip(tilt).zip(posterior.iter()) {
             #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-            ((h[lane], u[lane]) = (*p as f32, (p * libm::log(*p)) as f32));
+            ((h[lane], tilt[lane]) = (*p as f32, (p * (libm::log(*p) + entropy)) as f32));
         }
         let code = if map.is_pinned(cell) {
             self.bins + PINNED
@@ -108,9 +106,9 @@ impl Cells {
             self.bins + UNKNOWN
         };
         let changeable = code <= self.bins + UNKNOWN;
-        self.blocks[block].changeable[lane] = f32::from(u8::from(changeable));
+        self.changeable[block][lane] = f32::from(u8::from(changeable));
         #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-        (self.blocks[block].entropy[lane] = map.entropy(cell) as f32);
+        (self.entropies[block][lane] = map.entropy(cell) as f32);
         let bordered = self.bordered(index);
         self.reflections[bordered] = self.reflection_of[code];
         #[allow(clippy::cast_possible_truncation, reason = "at most 67 codes")]
@@ -145,7 +143,7 @@ impl Cells {
     /// A cell's entropy by its row-major index \[nats\].
     pub(crate) fn entropy(&self, index: usize) -> f32 {
         let (block, lane) = self.block_of(index);
-        self.blocks[block].entropy[lane]
+        self.entropies[block][lane]
     }
 
     /// The block that holds a cell, and the cell's lane in it.
@@ -154,11 +152,12 @@ impl Cells {
         (y * self.grid.width().div_ceil(LANES) + x / LANES, x % LANES)
     }
 
-    /// A block, row by row of the grid, with its h and h·log h.
+    /// The histograms of a block, row by row of the grid.
     #[inline(always)]
-    pub(crate) fn block(&self, block: usize) -> (&Block, &[Lanes], &[Lanes]) {
+    pub(crate) fn block(&self, block: usize) -> Prior<'_> {
         let rows = block * self.bins..(block + 1) * self.bins;
-        (&self.blocks[block], &self.h[rows.clone()], &self.u[rows])
+        let (h, tilt) = (&self.h[rows.clone()], &self.tilt[rows]);
+        Prior { h, tilt, changeable: &self.changeable[block] }
     }
 
     /// How far apart two rows lie in the bordered rasters.

@@ -2,7 +2,7 @@
 //!
 //! This file is the equations as printed, in f64: the oracle. [`sweep`] holds what runs.
 
-mod evidence;
+pub(crate) mod evidence;
 mod interpolation;
 pub(crate) mod lanes;
 mod rings;
@@ -85,6 +85,7 @@ fn information_gain(
     map.read_posterior(cell, &mut prior);
     model.evidence(cell_distance, outcome, &mut evidence);
     product(&prior, &evidence, &mut posterior);
-    let after = Histogram::from_weights(&posterior).map_or(0.0, |h| h.entropy());
-    map.entropy(cell) - after
+    // The entropy that the map keeps is rounded: too coarse where a reading says little.
+    let entropy = |weights: &[f64]| Histogram::from_weights(weights).map_or(0.0, |h| h.entropy());
+    entropy(&prior) - entropy(&posterior)
 }

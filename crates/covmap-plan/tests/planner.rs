@@ -173,6 +173,22 @@ proptest! {
     }
 
     #[test]
+    fn the_fast_gain_is_the_literal_one_where_readings_say_little(
+        scans in some_scans(), tempering in 0.05..0.3f64
+    ) {
+        let model = ModelParameters { usable_range: 1.5, tempering, ..ModelParameters::b21r() };
+        let parameters = PlannerParameters { strategy: Strategy::Ig, ..PlannerParameters::standard() };
+        let mut s = setting_of(&model, &SonarRing::b21r(), parameters);
+        s.stand(0.0, 0.0);
+        let stencil = Stencil::new(&s.model, 0.0);
+        let home = s.map.grid().cell_at(Point2::origin()).unwrap();
+        for (x, y, ranges) in scans {
+            s.scan(x, y, &ranges);
+            check_gains(&mut s, &stencil, home)?;
+        }
+    }
+
+    #[test]
     fn what_is_kept_equals_what_a_fresh_planner_computes(scans in some_scans(), strategy in strategies()) {
         let mut s = setting(strategy, 11, |_| ());
         s.stand(0.0, 0.0);

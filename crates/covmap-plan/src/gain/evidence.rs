@@ -1,17 +1,16 @@
-//! One imagined reading of cells at one distance, and what it leaves of their entropies.
+//! One imagined reading of cells at one distance, and what they gain by it.
 //!
-//! With u = h·log h of the stored histogram and v = t·log t of the evidence, the entropy of
-//! the normalised product h·t/Z is
+//! With the histogram h, the evidence t = c·(1 + e), e ≥ 0, and the entropy H of h, Eq. (13) is
 //!
 //! ```text
-//! H' = log Z − (Σ u·t + Σ h·v)/Z,   Z = Σ h·t
+//! I = (Σ ĥ·e + Σ h·w)/(1 + E) + E/(1 + E) − log(1 + E),   E = Σ h·e
+//! ĥ = h·(log h + H),   w = (1 + e)·log(1 + e) − e
 //! ```
 //!
-//! so that no product is normalised, and one logarithm is enough.
+//! so that no product is normalised, one logarithm is enough, and nothing large cancels: weak
+//! evidence (small e) has small terms only.
 
 use super::lanes::{LANES, Lanes, ln};
-use crate::cells::Block;
-use covmap::MAX_BINS;
 use covmap_model::{Outcome, SensorModel};
 
 /// p(c | d) of Eq. (9) for cells at one distance.
@@ -23,14 +22,13 @@ pub(crate) struct Evidence {
     v: Vec<f64>,
 }
 
-/// The same for many cells side by side. Far from its mean a Gaussian is nothing: the
-/// evidence of all bins from `head` on is the same.
+/// The same for many cells side by side: the bins from `first` on to which e is above 0. Far from
+/// its mean a Gaussian is nothing, so that these are few.
 #[derive(Debug, Clone)]
 pub(crate) struct Reading {
-    /// t and v of the first bins.
-    head: Vec<(f32, f32)>,
-    /// t and v of each of the others.
-    tail: (f32, f32),
+    first: usize,
+    /// e and w.
+    terms: Vec<(f32, f32)>,
 }
 
 impl Evidence {
@@ -39,6 +37,10 @@ impl Evidence {
         model.evidence(cell_distance, outcome, &mut t);
         let v = t.iter().map(|t| t * libm::log(*t)).collect();
         Self { t, v }
+    }
+
+    pub(crate) fn bins(&self) -> usize {
+        self.t.len()
     }
 
     /// The entropy of a histogram after the reading \[nats\].
@@ -51,81 +53,50 @@ impl Evidence {
         libm::log(z) - s / z
     }
 
-    #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
     pub(crate) fn reading(&self) -> Reading {
-        let rows: Vec<(f32, f32)> =
-            self.t.iter().zip(&self.v).map(|(t, v)| (*t as f32, *v as f32)).collect();
-        let tail = rows.last().copied().unwrap_or((1.0, 0.0));
-        let same = rows.iter().rev().take_while(|row| **row == tail).count();
-        Reading { head: rows[..rows.len() - same].to_vec(), tail }
+        let least = self.t.iter().copied().fold(f64::INFINITY, f64::min);
+        let above: Vec<f64> = self.t.iter().map(|t| t / least - 1.0).collect();
+        let first = above.iter().position(|e| *e > 0.0).unwrap_or(0);
+        let end = above.iter().rposition(|e| *e > 0.0).map_or(first, |last| last + 1);
+        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
+        let term = |e: &f64| (*e as f32, ((1.0 + e) * libm::log1p(*e) - e) as f32);
+        Reading { first, terms: above[first..end].iter().map(term).collect() }
     }
 }
 
-/// The histograms of a block of cells, with the sums over all bins from each one on.
+/// The histograms of a block of cells.
 pub(crate) struct Prior<'a> {
-    block: &'a Block,
-    h: &'a [Lanes],
-    u: &'a [Lanes],
-    sums: &'a PriorSums,
+    /// h of every bin.
+    pub(crate) h: &'a [Lanes],
+    /// ĥ of every bin.
+    pub(crate) tilt: &'a [Lanes],
+    /// 1 for a cell that a measurement can change, else 0.
+    pub(crate) changeable: &'a Lanes,
 }
 
-/// Σ h and Σ u from each bin on.
-pub(crate) struct PriorSums {
-    h: [Lanes; MAX_BINS + 1],
-    u: [Lanes; MAX_BINS + 1],
-}
-
-impl Default for PriorSums {
-    fn default() -> Self {
-        Self { h: [[0.0; LANES]; MAX_BINS + 1], u: [[0.0; LANES]; MAX_BINS + 1] }
-    }
-}
-
-impl<'a> Prior<'a> {
-    #[inline(always)]
-    pub(crate) fn new(
-        (block, h, u): (&'a Block, &'a [Lanes], &'a [Lanes]),
-        sums: &'a mut PriorSums,
-    ) -> Self {
-        sum_up(h, &mut sums.h);
-        sum_up(u, &mut sums.u);
-        Self { block, h, u, sums }
-    }
-
+impl Prior<'_> {
     /// The information gain of a reading in every cell, Eq. (13) \[nats\]: 0 where nothing can
     /// change.
     #[inline(always)]
     pub(crate) fn gain(&self, reading: &Reading) -> Lanes {
-        let (rest_h, rest_u) = (&self.sums.h[reading.head.len()], &self.sums.u[reading.head.len()]);
-        let (t, v) = reading.tail;
-        let (mut z, mut s) = ([0.0f32; LANES], [0.0f32; LANES]);
-        for lane in 0..LANES {
-            z[lane] = rest_h[lane] * t;
-            s[lane] = rest_u[lane] * t + rest_h[lane] * v;
-        }
-        for ((h, u), (t, v)) in self.h.iter().zip(self.u).zip(&reading.head) {
+        let (mut above, mut sum) = ([0.0f32; LANES], [0.0f32; LANES]);
+        let rows = self.h[reading.first..].iter().zip(&self.tilt[reading.first..]);
+        for ((h, tilt), (e, w)) in rows.zip(&reading.terms) {
             for lane in 0..LANES {
-                z[lane] += h[lane] * t;
-                s[lane] += u[lane] * t + h[lane] * v;
+                above[lane] += h[lane] * e;
+                sum[lane] += tilt[lane] * e + h[lane] * w;
             }
         }
-        let (log_z, mut gain) = (ln(&z), [0.0; LANES]);
-        let Block { entropy, changeable } = self.block;
+        let (mut z, mut gain) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
-            gain[lane] = changeable[lane] * (entropy[lane] - (log_z[lane] - s[lane] / z[lane]));
+            z[lane] = 1.0 + above[lane];
+        }
+        let log_z = ln(&z);
+        for lane in 0..LANES {
+            // E as it is in the logarithm, after rounding.
+            let above = z[lane] - 1.0;
+            gain[lane] = self.changeable[lane] * ((sum[lane] + above) / z[lane] - log_z[lane]);
         }
         gain
-    }
-}
-
-#[inline(always)]
-fn sum_up(values: &[Lanes], sums: &mut [Lanes; MAX_BINS + 1]) {
-    let mut sum = [0.0; LANES];
-    sums[values.len()] = sum;
-    for (values, to) in values.iter().zip(&mut sums[..values.len()]).rev() {
-        for lane in 0..LANES {
-            sum[lane] += values[lane];
-        }
-        *to = sum;
     }
 }

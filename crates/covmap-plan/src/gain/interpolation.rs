@@ -9,12 +9,12 @@ use super::evidence::Evidence;
 use covmap::bin_coverage;
 use std::f64::consts::PI;
 
-/// An interpolated gain of a cell may be off by this, in units of [`SCALE`] and the largest
-/// gain of its histogram: what a decision tolerates, for the worst of histograms. Errors of many
-/// cells cancel: E\[I\] is off by some hundredth of it.
+/// An interpolated gain of a cell may be off by this, in units of the largest gain of its
+/// histogram and of one that matters in a decision: what a decision tolerates, for the worst of
+/// histograms. Errors of many cells cancel: E\[I\] is off by some hundredth of it.
 const TOLERANCE: f64 = 1e-5;
-/// A gain that matters in a decision \[nats\].
-const SCALE: f64 = 0.3;
+/// A gain that matters in a decision is so much of the largest that a reading can give.
+const SHARE: f64 = 0.1;
 
 /// Where a function is evaluated, and what each value weighs at each of the points asked for.
 #[derive(Debug, Clone)]
@@ -86,11 +86,15 @@ fn lagrange(nodes: &[f64], x: f64) -> Vec<f64> {
 pub(crate) struct Probes {
     /// h and h·log h.
     probes: Vec<(Vec<f64>, Vec<f64>)>,
+    /// A gain that matters in a decision \[nats\].
+    scale: f64,
 }
 
 impl Probes {
     /// The uniform one, and narrow and wide ones around many coverages, alone and in pairs.
-    pub(crate) fn new(bins: usize) -> Self {
+    /// `strongest` is the evidence that tells most.
+    pub(crate) fn new(strongest: &Evidence) -> Self {
+        let bins = strongest.bins();
         let mut probes = vec![vec![1.0; bins]];
         for center in [0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0] {
             for (width, floor) in
@@ -113,7 +117,10 @@ impl Probes {
             let u = h.iter().map(|h| h * libm::log(*h)).collect();
             (h, u)
         };
-        Self { probes: probes.into_iter().map(probe).collect() }
+        let mut found = Self { probes: probes.into_iter().map(probe).collect(), scale: 0.0 };
+        let gains = found.largest_gains(&[found.after(strongest)]);
+        found.scale = SHARE * gains.into_iter().fold(0.0, f64::max);
+        found
     }
 
     /// The entropy of every probe after a reading \[nats\].
@@ -124,11 +131,16 @@ impl Probes {
     /// How much an interpolated entropy of each probe may be off, where these are exact; more
     /// by a factor.
     fn allowed(&self, exact: &[Vec<f64>], leniency: f64) -> Vec<f64> {
-        let largest_gain = |(probe, (_, u)): (usize, &(Vec<f64>, Vec<f64>))| {
+        let gains = self.largest_gains(exact).into_iter();
+        gains.map(|gain| leniency * TOLERANCE * (gain + self.scale)).collect()
+    }
+
+    /// The largest change of every probe's entropy, given those after some readings \[nats\].
+    fn largest_gains(&self, after: &[Vec<f64>]) -> Vec<f64> {
+        let largest = |(probe, (_, u)): (usize, &(Vec<f64>, Vec<f64>))| {
             let before = -u.iter().sum::<f64>();
-            exact.iter().map(|after| (before - after[probe]).abs()).fold(0.0, f64::max)
+            after.iter().map(|after| (before - after[probe]).abs()).fold(0.0, f64::max)
         };
-        let gains = self.probes.iter().enumerate().map(largest_gain);
-        gains.map(|gain| leniency * TOLERANCE * (gain + SCALE)).collect()
+        self.probes.iter().enumerate().map(largest).collect()
     }
 }

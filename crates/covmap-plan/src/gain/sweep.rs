@@ -5,7 +5,6 @@
 //! summed over the cells of each beam of each view-point, [`LANES`] neighbours of a row side by
 //! side.
 
-use super::evidence::{Prior, PriorSums};
 use super::lanes::{LANES, Lanes};
 use super::rings::{Ring, Shares, Source, TOGETHER, rings};
 use crate::Stencil;
@@ -46,8 +45,8 @@ pub(crate) struct Row {
     pub(crate) outcomes: Vec<usize>,
     /// … and their probabilities.
     pub(crate) probabilities: Vec<Lanes>,
-    /// E\[I\] of every unit: the result.
-    pub(crate) gains: Vec<Lanes>,
+    /// E\[I\] of every unit: the result. Summed ring by ring: gains of either sign nearly cancel.
+    pub(crate) gains: Vec<[f64; LANES]>,
 }
 
 /// So many units of a row are prepared and then summed.
@@ -224,9 +223,8 @@ impl WithSimd for Fill<'_> {
         // The order of the readings: in front, near, no echo.
         let kinds =
             [(FRONT, 0..near), (NEAR, near..no_echo), (NO_ECHO, no_echo..ring.readings.len())];
-        let mut sums = PriorSums::default();
         for (x, asked) in asked.iter().enumerate().filter(|(_, asked)| **asked != 0) {
-            let prior = Prior::new(cells.block(y * sweep.blocks() + x), &mut sums);
+            let prior = cells.block(y * sweep.blocks() + x);
             let column = sweep.border + x * LANES;
             for (_, readings) in kinds.iter().filter(|(kind, _)| asked & kind != 0) {
                 for i in readings.clone() {
@@ -268,7 +266,9 @@ impl WithSimd for Sum<'_> {
                         mix_outcomes(likely.clone(), first, weights);
                 }
             }
-            for (i, (unit, gain)) in units.iter().zip(gains).enumerate() {
+            for (i, (unit, total)) in units.iter().zip(gains).enumerate() {
+                let mut of_ring = [0.0; LANES];
+                let gain = &mut of_ring;
                 let cells = &sweep.offsets[unit.beam][ring.cells[unit.beam].clone()];
                 let here = start + unit.group * LANES;
                 let sum =
@@ -287,6 +287,9 @@ impl WithSimd for Sum<'_> {
                 }
                 if let Some((source, place)) = ring.no_echo.as_ref().zip(unit.sides.no_echo) {
                     add_product(gain, &probabilities[place], &sum(source));
+                }
+                for lane in 0..LANES {
+                    total[lane] += f64::from(of_ring[lane]);
                 }
             }
         }
