@@ -7,7 +7,16 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the program is made of.
-const SOURCES: [&str; 4] = ["Cargo.toml", "Cargo.lock", "crates", "xtask/src"];
+const SOURCES: [&str; 8] = [
+    "Cargo.toml",
+    "Cargo.lock",
+    "crates",
+    "configs/fit",
+    "scenarios",
+    "xtask/Cargo.toml",
+    "xtask/build.rs",
+    "xtask/src",
+];
 
 fn main() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");

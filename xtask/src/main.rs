@@ -6,7 +6,6 @@
 
 mod arguments;
 mod bench;
-#[allow(dead_code, unused_imports, reason = "figures and verdicts read the records")]
 mod campaign;
 mod compare;
 mod csv_file;

@@ -191,10 +191,12 @@ impl ModelParameters {
                 return Err(ModelError::NotMonotone(name));
             }
         }
-        within("gamma.base", self.gamma.base, 0.0, 1e3)?;
         if self.gamma.base <= 0.0 {
             return Err(ModelError::NoUniformShare);
         }
+        within("gamma.base", self.gamma.base, 1e-12, 1e3)?;
+        within("gamma.per_cell_distance", self.gamma.per_cell_distance, 0.0, 1e3)?;
+        within("gamma.per_range", self.gamma.per_range, 0.0, 1e3)?;
         #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let half_bin = 0.5 / (self.bins - 1) as f64;
         if self.sigma_out.base < half_bin {

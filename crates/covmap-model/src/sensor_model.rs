@@ -160,7 +160,7 @@ impl SensorModel {
         let p = &self.parameters;
         assert_eq!(out.len(), p.bins, "one place for each bin");
         let (mu, sigma, gamma) = self.terms(&self.reading(outcome), cell_distance);
-        // exp ∘ log is four times as fast as libm's pow, which would be most of integrating.
+        // exp ∘ log is four times as fast as libm's pow, which would be most of a fit's baselines and tables.
         let tempered = |density: f64| match p.tempering {
             exponent if exponent < 1.0 => libm::exp(exponent * libm::log(density)),
             _ => density,

@@ -10,10 +10,9 @@ use crate::gain::lanes::{LANES, Lanes};
 /// [`LANES`] probabilities.
 type Wide = [f64; LANES];
 
-/// Outcomes less likely than this are left out of E\[I\]. Behind what reflects probabilities fall
-/// at least geometrically, so that all of them together are some times this: less than a tenth
-/// of what a decision tolerates.
-const NEGLIGIBLE: f64 = 2e-7;
+/// Outcomes less likely than this are left out of E\[I\]: of some hundred outcomes, all of them
+/// together are less than a hundredth of what a decision tolerates.
+const NEGLIGIBLE: f64 = 1e-9;
 
 /// A beam as all view-points see it.
 #[derive(Debug, Clone)]

@@ -27,6 +27,10 @@ pub(crate) fn nearest_passage(
         }
     }
     let mut nearest: Option<(f64, usize)> = None;
+    // Costs grow by one from cell to cell, so that each length stays in this order.
+    front
+        .make_contiguous()
+        .sort_by(|a: &(usize, f64, usize), b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
     while let Some((at, cost, length)) = front.pop_front() {
         for next in neighbours(grid, at).filter(|next| previous[*next] == UNSEEN) {
             if length > 0 && is_beyond(next) && nearest.is_none_or(|(least, _)| cost < least) {
@@ -46,11 +50,13 @@ pub(crate) fn nearest_passage(
     nearest.map(|(_, last)| way_back(&previous, last))
 }
 
-/// The cells of all regions of at least `least` cells that hang together by their sides.
-pub(crate) fn large_regions(
+/// The cells of all regions that hang together by their sides, of at least `least` cells, one of
+/// which `is_wanted`.
+pub(crate) fn regions(
     grid: &Grid,
     least: usize,
     is_member: impl Fn(usize) -> bool,
+    is_wanted: impl Fn(usize) -> bool,
 ) -> Vec<bool> {
     let mut seen = vec![false; grid.len()];
     let mut large = vec![false; grid.len()];
@@ -70,7 +76,7 @@ pub(crate) fn large_regions(
                 }
             }
         }
-        if region.len() >= least {
+        if region.len() >= least && region.iter().any(|i| is_wanted(*i)) {
             region.into_iter().for_each(|i| large[i] = true);
         }
     }

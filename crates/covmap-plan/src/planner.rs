@@ -6,7 +6,7 @@ use crate::decision::{REPORTED, Score, best};
 use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
 use crate::onlookers::Mark;
-use crate::passage::{large_regions, nearest_passage};
+use crate::passage::{nearest_passage, regions};
 use crate::traversable::Traversable;
 use crate::view_points::ViewPoints;
 use crate::window::Window;
@@ -18,6 +18,7 @@ use covmap::{Cell, Change, CoverageMap, Grid, Raster};
 use covmap_model::{SensorModel, cells_under_body, intercepted};
 use covmap_sonar::Scan;
 use nalgebra::Point2;
+use rayon::prelude::*;
 
 /// The fast evaluation of E\[I\] is within this of the literal one, in units of the largest
 /// absolute gain of the decision; candidates closer to the best are decided by the latter.
@@ -260,23 +261,26 @@ impl Planner {
             return None;
         }
         let here = travel_costs(&self.grid, from, |index| self.traversable.at(index));
-        let cut_off = large_regions(&self.grid, ROOM * self.traversable.body_cells(), |i| {
-            self.traversable.at(i) && here.cost(i).is_none()
-        });
+        let is_cut_off = |i: usize| self.traversable.at(i) && here.cost(i).is_none();
         let mut wanted = ViewPoints::new(&self.grid);
-        (0..self.grid.len()).filter(|i| cut_off[*i]).for_each(|i| wanted.insert(i));
+        (0..self.grid.len()).filter(|i| is_cut_off(*i)).for_each(|i| wanted.insert(i));
         self.beams.refresh_sight(&self.cells, &wanted);
         let is_candidate =
-            |i: usize| cut_off[i] && !self.measured.is_spent(i) && self.beams.has_reason(i);
+            |i: usize| is_cut_off(i) && !self.measured.is_spent(i) && self.beams.has_reason(i);
+        let least = ROOM * self.traversable.body_cells();
+        let rooms = regions(&self.grid, least, is_cut_off, is_candidate);
+        let may_open =
+            |i: usize| !rooms[i] && self.traversable.may_open(i) && !self.exploration.is_outside(i);
         let passage = nearest_passage(
             &self.grid,
             longest,
             |i| here.cost(i).map(|d| d / self.grid.resolution()),
-            |i| self.traversable.may_open(i) && !self.exploration.is_outside(i),
-            is_candidate,
+            may_open,
+            |i| rooms[i],
         )?;
-        let open = |i: usize| self.traversable.at(i) || passage.contains(&i);
-        let costs = travel_costs(&self.grid, from, open);
+        let mut open: Vec<bool> = (0..self.grid.len()).map(|i| self.traversable.at(i)).collect();
+        passage.iter().for_each(|i| open[*i] = true);
+        let costs = travel_costs(&self.grid, from, |i| open[i]);
         let is_reached = |i: &usize| is_candidate(*i) && costs.cost(*i).is_some();
         let indices = (0..self.grid.len()).filter(is_reached).collect();
         Some(Candidates { indices, costs, passage })
@@ -406,15 +410,11 @@ impl Planner {
         // Eq. (16) divides by the largest gain, so that one must be exact as well.
         let largest = records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
         let near_max = top(|r| r.gain, records) - 2.0 * GAIN_TOLERANCE * largest;
-        for r in records.iter_mut().filter(|r| contends(r) || r.gain >= near_max) {
-            r.gain = expected_information_gain(
-                map,
-                &self.model,
-                &self.stencil,
-                &self.parameters,
-                r.cell,
-            );
-        }
+        let (model, stencil, parameters) = (&self.model, &self.stencil, &self.parameters);
+        let doubtful = records.par_iter_mut().filter(|r| contends(r) || r.gain >= near_max);
+        doubtful.for_each(|r| {
+            r.gain = expected_information_gain(map, model, stencil, parameters, r.cell);
+        });
         score.apply(records);
         contenders
     }

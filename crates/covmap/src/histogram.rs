@@ -27,7 +27,8 @@ pub fn bin_coverage(bin: usize, bins: usize) -> f64 {
 /// before it is normalised. Returns its sum Z.
 ///
 /// Every use of a measurement in this project, whether it is integrated or only imagined
-/// for its information gain, is this product.
+/// for its information gain, is this product: the literal evaluations of both share it, and the
+/// fast ones, which compute the same for many cells side by side, are tested against them.
 ///
 /// # Panics
 /// If the three slices differ in length.

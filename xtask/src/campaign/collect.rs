@@ -38,6 +38,10 @@ pub(crate) fn run(arguments: &Collect) -> Result<ExitCode> {
     }
     let (records, _) = folder::read_all(out, &manifest);
     tables::write(out, &manifest.metrics, &records)?;
+    if records.len() < manifest.runs.len() {
+        let missing = manifest.runs.len() - records.len();
+        say::note(format!("{}: {missing} runs are missing", out.display()));
+    }
     if !quiet {
         say::line(format!(
             "{}: {} of {} runs of {}",

@@ -32,7 +32,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let records = run_all(&campaign, &options, &|step| match step {
         Step::Begin { recorded, of } => bar.begin(*recorded, *of),
         Step::Note(note) => bar.note(note),
-        Step::Done(_) => bar.done(),
+        Step::Done => bar.done(),
     });
     bar.finish();
     let records = records?;

@@ -228,20 +228,6 @@ pub(crate) fn read_all(dir: &Path, manifest: &Manifest) -> (Vec<RunRecord>, Vec<
     (records, damaged)
 }
 
-/// All recorded runs in the folder of a campaign, in its order.
-///
-/// # Errors
-/// If it is no folder of a campaign, or the file of a run is damaged.
-pub(crate) fn load(dir: &Path) -> Result<Vec<RunRecord>> {
-    let none = || anyhow!("{}: is no folder of a campaign", dir.display());
-    let manifest = Manifest::read(dir)?.ok_or_else(none)?;
-    let (records, damaged) = read_all(dir, &manifest);
-    match damaged.first() {
-        Some(file) => bail!("{}: is damaged; run the campaign again", file.display()),
-        None => Ok(records),
-    }
-}
-
 /// The paths of a run in the folder of a campaign that keeps them.
 ///
 /// # Errors

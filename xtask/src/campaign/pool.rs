@@ -29,13 +29,13 @@ pub(crate) struct Options<'a> {
 
 /// What is told while a campaign goes on.
 #[derive(Debug)]
-pub(crate) enum Step<'a> {
+pub(crate) enum Step {
     /// So many runs of so many are recorded already.
     Begin { recorded: usize, of: usize },
     /// Something to know.
     Note(String),
     /// A run is done and recorded.
-    Done(&'a RunKey),
+    Done,
 }
 
 /// Runs what is not recorded yet, writes the tables, and returns all recorded runs of the
@@ -47,7 +47,7 @@ pub(crate) enum Step<'a> {
 pub(crate) fn run(
     campaign: &Campaign,
     options: &Options<'_>,
-    tell: &(dyn Fn(&Step<'_>) + Sync),
+    tell: &(dyn Fn(&Step) + Sync),
 ) -> Result<Vec<RunRecord>> {
     let plan = Plan::new(campaign)?;
     let folder = Folder::open(options.out, &plan.manifest)?;
@@ -79,7 +79,7 @@ fn missing<'a>(
     jobs: &[&'a Job],
     plan: &Plan,
     out: &Path,
-    tell: &(dyn Fn(&Step<'_>) + Sync),
+    tell: &(dyn Fn(&Step) + Sync),
 ) -> Vec<&'a Job> {
     let is_missing = |job: &&&Job| match folder::read(out, &job.planned, plan.keep_paths) {
         Recorded::Whole(_) => false,
@@ -99,7 +99,7 @@ fn work(
     jobs: &[&Job],
     folder: &Folder,
     options: &Options<'_>,
-    tell: &(dyn Fn(&Step<'_>) + Sync),
+    tell: &(dyn Fn(&Step) + Sync),
 ) -> Result<()> {
     let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
     let error = Mutex::new(None);
@@ -108,7 +108,7 @@ fn work(
     let one = |job: &Job| -> Result<()> {
         if let Some(done) = execute(plan, job, &watch)? {
             folder.write(&job.planned.id, &done.record, done.paths.as_ref())?;
-            tell(&Step::Done(&job.planned.key));
+            tell(&Step::Done);
         }
         Ok(())
     };

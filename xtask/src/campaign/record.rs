@@ -44,16 +44,6 @@ pub(crate) enum Value {
     Text(String),
 }
 
-impl RunRecord {
-    /// The number with a name.
-    pub(crate) fn number(&self, name: &str) -> Option<f64> {
-        match self.values.get(name) {
-            Some(Value::Number(number)) => Some(*number),
-            Some(Value::Text(_)) | None => None,
-        }
-    }
-}
-
 impl fmt::Display for RunKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { world, setting, strategy, start, seed } = self;

@@ -56,7 +56,8 @@ struct Second<'a> {
 }
 
 const RULE: &str = "all trials must hold; Student's t on the standard error of a bootstrap over starts \
-                    (2000 resamples), 95 %; Holm over all claims of the configuration at .05";
+                    (2000 resamples; claims 1 and 2: Agresti–Coull over seeds; 4: over worlds; 21: \
+                    over walls), 95 %; Holm over all claims of the configuration at .05";
 
 /// The figures in the order of the paper; those that are there are shown.
 const FIGURES: [(&str, &[&str]); 7] = [
@@ -129,8 +130,8 @@ impl Report {
         }
         page.paragraph(
             "configs/paper.ron decides the verdicts; configs/b21r.ron, with our additions, is a second column. What the \
-             campaigns set otherwise, because runs would not end or never begin without it, stands under What was run. Nothing \
-             was tuned for a claim, and thresholds were written before results were seen. The unit is a paired (start, \
+             campaigns set otherwise stands under What was run: cells of .2 m instead of .1 m, to save time, though σ and γ were \
+             fitted at .1 m. Nothing was tuned for a claim, and thresholds were written before results were seen. The unit is a paired (start, \
              seed). Tests: Student's t on the standard error of a bootstrap that draws whole starts; a claim needs all its \
              tests, and pays for the others by Holm's correction. Where the robot did not explore its world, nothing is \
              decided.",
@@ -204,10 +205,7 @@ impl Report {
             table(&heading("Accuracy of the final map"), tables::accuracy(runs));
             table(&heading("What it costs, and the time of a decision"), tables::cost(runs));
         }
-        table(
-            "One reading changed at a time, on a small world (at most 4000 scans a run)",
-            tables::ablation(&self.ablation),
-        );
+        table("One reading changed at a time, on a small world", tables::ablation(&self.ablation));
     }
 }
 

@@ -1,7 +1,7 @@
 //! How the experiments are run: where, how many at a time, and how thoroughly.
 
 use crate::arguments::Experiments;
-use crate::campaign::{Campaign, Options, RunRecord, Seeds, Setting, Shard, Step, run};
+use crate::campaign::{Campaign, Options, RunRecord, Seeds, Setting, Shard, Starts, Step, run};
 use crate::interrupt::Interrupt;
 use crate::progress::Bar;
 use crate::say;
@@ -71,7 +71,7 @@ impl<'a> Session<'a> {
         let records = run(&campaign, &options, &|step| match step {
             Step::Begin { recorded, of } => bar.begin(*recorded, *of),
             Step::Note(note) => bar.note(note),
-            Step::Done(_) => bar.done(),
+            Step::Done => bar.done(),
         });
         bar.finish();
         let records = records?;
@@ -109,12 +109,19 @@ pub(crate) const RAN: [&str; 8] = [
 ];
 
 fn row(campaign: &Campaign, setting: &Setting, records: &[RunRecord]) -> Vec<String> {
-    let worlds: Vec<&str> = campaign.worlds.iter().map(|world| world.name.as_str()).collect();
     let mut with: Vec<String> =
         setting.overrides.iter().map(|(path, value)| format!("{path}: {value}")).collect();
     with.extend(setting.while_driving.map(|every| format!("a scan every {every} m")));
     with.extend(setting.max_scans.map(|most| format!("at most {most} scans")));
     let mine: Vec<&RunRecord> = records.iter().filter(|r| r.key.setting == setting.name).collect();
+    let worlds: std::collections::BTreeSet<&str> =
+        mine.iter().map(|record| record.key.world.as_str()).collect();
+    let worlds: Vec<&str> = worlds.into_iter().collect();
+    let starts = match &campaign.starts {
+        Starts::Drawn { count, seed } => format!("{count}, drawn with seed {seed}"),
+        Starts::Given => "given by the world".to_owned(),
+        other => format!("{other:?}"),
+    };
     let seconds: f64 = mine.iter().filter_map(|r| r.times.get("seconds")).sum();
     let Seeds { first, count } = campaign.seeds;
     vec![
@@ -123,7 +130,7 @@ fn row(campaign: &Campaign, setting: &Setting, records: &[RunRecord]) -> Vec<Str
         setting.name.clone(),
         setting.config.file_name().unwrap_or_default().to_string_lossy().into_owned(),
         with.join(", "),
-        format!("{:?}", campaign.starts),
+        starts,
         format!("{first} to {}", first + count.max(1) as u64 - 1),
         format!("{}, {:.1}", mine.len(), seconds / 60.0),
     ]

@@ -4,6 +4,9 @@ use crate::Spread;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
+/// Fewer groups than this that are all alike say nothing of their spread.
+const ALIKE: usize = 3;
+
 /// A number with its standard error.
 ///
 /// # Formula
@@ -48,8 +51,8 @@ impl Estimate {
             if self.standard_error > 0.0 {
                 student.cdf((self.value - bound) / self.standard_error)
             } else {
-                // All resamples are alike.
-                f64::from(u8::from(self.value >= bound))
+                // All groups are alike: of few of them that says nothing.
+                f64::from(u8::from(self.groups < ALIKE || self.value >= bound))
             }
         })
     }
@@ -124,8 +127,10 @@ mod tests {
     }
 
     #[test]
-    fn values_that_are_all_alike_are_certain() {
-        let alike = Estimate::of_mean(&[0.0; 4]).unwrap();
+    fn many_groups_that_are_all_alike_are_certain() {
+        let few = Estimate::of_mean(&[0.0; 2]).unwrap();
+        assert!(few.p_below(0.1) >= 1.0);
+        let alike = Estimate::of_mean(&[0.0; 5]).unwrap();
         assert_eq!(alike.interval(0.95), Some((0.0, 0.0)));
         assert!(
             alike.p_below(0.1) < 1e-12 && alike.p_above(0.1) >= 1.0 && alike.p_below(0.0) >= 1.0

@@ -34,7 +34,7 @@ impl Terms {
     }
 
     /// [`SensorModel::evidence`] of a block, not normalised: the largest weight of a cell lies
-    /// between ½ and 2. Each weight is within 2e-6 of the literal one, in units of itself,
+    /// between ½ and 2. Each weight is within 1e-5 of the literal one, in units of itself,
     /// where that is more than 1e-12 of the largest.
     #[inline(always)]
     pub(crate) fn evidence(

@@ -59,7 +59,9 @@ impl WithSimd for Integration<'_> {
 impl<'a> Integration<'a> {
     fn new(model: &'a SensorModel, map: &'a mut CoverageMap, scan: &'a Scan) -> Self {
         let grid = *map.grid();
-        let (low, high) = model.footprint().extent(&grid, &scan.pose, model.max_reach());
+        let outcomes = scan.ranges.iter().filter_map(|range| model.outcome(*range));
+        let reach = outcomes.map(|outcome| model.reach(outcome)).fold(0.0, f64::max);
+        let (low, high) = model.footprint().extent(&grid, &scan.pose, reach);
         let touched = Touched::new(low, high);
         let room = touched.slots.len();
         let (cells, places) = (Vec::with_capacity(room), Vec::with_capacity(room));
