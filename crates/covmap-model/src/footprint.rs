@@ -182,12 +182,16 @@ impl Footprint {
     }
 }
 
-/// The cells of a grid in a box: the first and the last.
+/// The cells of a grid in a box: the first and the last, which is before the first if there are
+/// none.
 fn inside(grid: &Grid, low: Point2<f64>, high: Point2<f64>) -> (Cell, Cell) {
     let (low, high) = (grid.unbounded_cell_at(low), grid.unbounded_cell_at(high));
     let side = |n: usize| i32::try_from(n).unwrap_or(i32::MAX) - 1;
     let last = Cell::new(high.x.min(side(grid.width())), high.y.min(side(grid.height())));
-    (Cell::new(low.x.max(0), low.y.max(0)), last)
+    let first = Cell::new(low.x.max(0), low.y.max(0));
+    // However far out the box is, all that is computed of these must not overflow.
+    let is_empty = last.x < first.x || last.y < first.y;
+    if is_empty { (Cell::new(0, 0), Cell::new(-1, -1)) } else { (first, last) }
 }
 
 /// The angles to the right and to the left of each axis: half of the way to the next axis,
