@@ -7,7 +7,7 @@ use covmap::bin_coverage;
 use covmap_io::{ChartAxis, ColorMap, Figure, HeatMap};
 use covmap_model::{Outcome, SensorModel};
 
-/// The measured range of the figure [m].
+/// The measured range of the figure \[m\].
 pub(crate) const RANGE: f64 = 1.0;
 
 /// Draws the figure for one or more models, each with its name.

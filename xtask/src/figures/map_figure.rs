@@ -13,7 +13,7 @@ use nalgebra::Point2;
 const PATH_WIDTH: f64 = 2.0;
 const SCAN_SIZE: f64 = 5.0;
 const START_SIZE: f64 = 16.0;
-/// The side of the cells of the truth behind a path [m].
+/// The side of the cells of the truth behind a path \[m\].
 const SIDE: f64 = 0.05;
 
 /// A driven path with what it is.

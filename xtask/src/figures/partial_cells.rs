@@ -18,7 +18,7 @@ pub(crate) const FIG_2: usize = 30;
 /// How much of the cell is covered.
 pub(crate) const COVERAGE: f64 = 0.2;
 
-/// The side of the cell [m], and its lower left corner: the scenarios say so.
+/// The side of the cell \[m\], and its lower left corner: the scenarios say so.
 const SIDE: f64 = 0.1;
 const CORNER: [f64; 2] = [2.5, 2.0];
 

@@ -3,7 +3,7 @@
 /// A run in Fig. 6.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Point {
-    /// Length of the path [m].
+    /// Length of the path \[m\].
     pub(crate) path: f64,
     /// The share of cells that are explored well enough.
     pub(crate) share: f64,

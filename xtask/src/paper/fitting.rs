@@ -18,7 +18,7 @@ const QUICK_SIDE: f64 = 0.2;
 /// What a fit came to.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Fitting {
-    /// The objective on each held-out world, fitted less unfitted [nats].
+    /// The objective on each held-out world, fitted less unfitted \[nats\].
     pub(crate) differences: Vec<f64>,
     /// How it was fitted.
     pub(crate) what: String,

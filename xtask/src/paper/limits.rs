@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// A run is compared up to so many scans.
 const SCANS: usize = 150;
-/// Cells of this side [m], so that it is quick.
+/// Cells of this side \[m\], so that it is quick.
 const SIDE: f64 = 0.2;
 
 /// Whether the ends are those of CL and IG.

@@ -12,12 +12,12 @@ use rayon::prelude::*;
 
 /// A wall is turned by each of these [°].
 const TURNS: [f64; 3] = [7.0, 17.0, 29.0];
-/// The robot drives past it at this distance [m], and measures so often …
+/// The robot drives past it at this distance \[m\], and measures so often …
 const AWAY: [f64; 2] = [0.8, 1.2];
 const SCANS: usize = 40;
-/// … over this length [m].
+/// … over this length \[m\].
 const LENGTH: f64 = 2.0;
-/// From this distance [m] on cells are not looked at.
+/// From this distance \[m\] on cells are not looked at.
 const RANGE: f64 = 2.0;
 
 /// Each unit is a (wall and distance, seed) with mean occupancy, error of the occupancy, and
