@@ -18,7 +18,7 @@ use covmap_io::{OutputFolder, read_ron, write_ron};
 use covmap_sonar::{Range, Scan, SonarRing};
 use covmap_world::survey::Survey;
 use covmap_world::{Surface, World, stream};
-use knobs::{KNOBS, Knob};
+use knobs::KNOBS;
 use nalgebra::{Isometry2, Point2, Translation2};
 use std::io::Write;
 use std::process::ExitCode;
@@ -110,13 +110,12 @@ fn fit(
     interrupt: &Interrupt,
 ) -> Result<Config> {
     let mut progress = Progress::new(arguments.quiet);
-    let knobs: Vec<&Knob> = KNOBS.iter().collect();
     let turned = |place: &[f64]| {
         let mut config = config.clone();
-        knobs.iter().zip(place).for_each(|(knob, at)| knob.set(&mut config, *at));
+        KNOBS.iter().zip(place).for_each(|(knob, at)| knob.set(&mut config, *at));
         config
     };
-    let start: Vec<f64> = knobs.iter().map(|knob| knob.place(config)).collect();
+    let start: Vec<f64> = KNOBS.iter().map(|knob| knob.place(config)).collect();
     let settings = SearchSettings { evaluations: arguments.fit, ..SearchSettings::default() };
     let value =
         |place: &[f64]| Some(real.log_likelihood_under(&recording.simulated(&turned(place)).ok()?));
@@ -176,7 +175,7 @@ impl Recording {
     }
 
     fn simulated(&self, config: &Config) -> Result<Table> {
-        let (ring, _) = config.build()?;
+        let ring = SonarRing::from_specification(&config.robot.ring)?;
         config.sonar.validate()?;
         let mut all = Vec::new();
         for seed in 0..SEEDS {

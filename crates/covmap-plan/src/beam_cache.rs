@@ -1,18 +1,19 @@
 //! What each beam of each view-point sees and gains, kept until a scan changes it.
 
 use crate::cells::Cells;
-use crate::gain::lanes::{LANES, Lanes};
 use crate::gain::sweep::{Row, Sides, Sweep, Unit};
 use crate::look_ahead::{Ahead, Cone};
 use crate::onlookers::{Mark, Onlookers};
 use crate::view_points::{ViewPoints, groups, place};
 use crate::{PlannerParameters, Stencil};
 use covmap::Grid;
+use covmap::lanes::{LANES, Lanes};
 use covmap_model::SensorModel;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-/// So many beams of groups are evaluated at once, at most: bounds the memory.
+/// So many beams of groups are evaluated at once, at most: bounds the memory of what is likely from
+/// each, though not that of the rows of cells around them.
 const PORTION: usize = 1 << 17;
 
 /// So many rows of groups, or groups, are worked at by one thread at least: to wake another one

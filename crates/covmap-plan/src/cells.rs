@@ -1,8 +1,9 @@
 //! What the planner keeps of the map, laid out for the beams of many view-points.
 
 use crate::gain::evidence::Prior;
-use crate::gain::lanes::{LANES, Lanes};
+use crate::view_points::{groups, place};
 use crate::{PlannerParameters, Stencil};
+use covmap::lanes::{LANES, Lanes};
 use covmap::{Cell, CoverageMap, Grid, MAX_BINS, bin_coverage};
 
 /// The planner's copy of the map.
@@ -52,7 +53,7 @@ impl Cells {
         let outside = (bins + OUTSIDE) as u8;
         // Lanes past the last cell of a row read on.
         let bordered = bordered + LANES;
-        let blocks = grid.height() * grid.width().div_ceil(LANES);
+        let blocks = grid.height() * groups(&grid);
         let none = [0.0; LANES];
         let mut cells = Self {
             grid,
@@ -148,8 +149,7 @@ impl Cells {
 
     /// The block that holds a cell, and the cell's lane in it.
     fn block_of(&self, index: usize) -> (usize, usize) {
-        let (x, y) = (index % self.grid.width(), index / self.grid.width());
-        (y * self.grid.width().div_ceil(LANES) + x / LANES, x % LANES)
+        place(self.grid.width(), index)
     }
 
     /// The histograms of a block, row by row of the grid.

@@ -4,7 +4,6 @@
 
 pub(crate) mod evidence;
 mod interpolation;
-pub(crate) mod lanes;
 mod rings;
 pub(crate) mod sweep;
 

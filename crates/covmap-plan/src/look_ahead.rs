@@ -5,7 +5,7 @@
 
 use crate::BeamStencil;
 use crate::cells::Cells;
-use crate::gain::lanes::{LANES, Lanes};
+use covmap::lanes::{LANES, Lanes};
 
 /// [`LANES`] probabilities.
 type Wide = [f64; LANES];

@@ -1,9 +1,9 @@
 //! From where a cell can be seen: whose values a change of the cell makes stale.
 
 use crate::Stencil;
-use crate::gain::lanes::LANES;
 use crate::view_points::{groups, place};
 use covmap::Grid;
+use covmap::lanes::LANES;
 
 /// Neighbouring view-points of a row that hold a cell in the same beam: their places from the
 /// cell, and the least rank that it has in the beam's order of distance.

@@ -1,7 +1,7 @@
 //! Sets of view-points, in groups of neighbours.
 
-use crate::gain::lanes::LANES;
 use covmap::Grid;
+use covmap::lanes::LANES;
 
 /// A set of view-points. Each row of the grid is cut into groups of [`LANES`] neighbours; a bit
 /// for each.

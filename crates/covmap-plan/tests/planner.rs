@@ -138,6 +138,21 @@ fn check_gains(s: &mut Setting, stencil: &Stencil, from: Cell) -> Result<(), Tes
     Ok(())
 }
 
+/// The same at the origin, after each of some scans.
+fn check_gains_after_every_scan(
+    mut s: Setting,
+    scans: Vec<(f64, f64, Vec<Range>)>,
+) -> Result<(), TestCaseError> {
+    s.stand(0.0, 0.0);
+    let stencil = Stencil::new(&s.model, 0.0);
+    let home = s.map.grid().cell_at(Point2::origin()).unwrap();
+    for (x, y, ranges) in scans {
+        s.scan(x, y, &ranges);
+        check_gains(&mut s, &stencil, home)?;
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
@@ -146,14 +161,8 @@ proptest! {
         scans in some_scans(), bins in prop::sample::select(vec![6, 11, 16, 33]),
         share in prop_oneof![3 => Just(0.0), 1 => 0.0..0.2f64], unknown in prop_oneof![Just(0.0), 0.0..0.5f64]
     ) {
-        let mut s = setting(Strategy::Ig, bins, |p| (p.uniform_share, p.unknown_reflection) = (share, unknown));
-        s.stand(0.0, 0.0);
-        let stencil = Stencil::new(&s.model, 0.0);
-        let home = s.map.grid().cell_at(Point2::origin()).unwrap();
-        for (x, y, ranges) in scans {
-            s.scan(x, y, &ranges);
-            check_gains(&mut s, &stencil, home)?;
-        }
+        let s = setting(Strategy::Ig, bins, |p| (p.uniform_share, p.unknown_reflection) = (share, unknown));
+        check_gains_after_every_scan(s, scans)?;
     }
 
     #[test]
@@ -162,14 +171,8 @@ proptest! {
     ) {
         // With an offset of half a cell there are cells exactly where two rings meet.
         let parameters = PlannerParameters { strategy: Strategy::Ig, ..PlannerParameters::standard() };
-        let mut s = setting_of(&model, &ring(offset), parameters);
-        s.stand(0.0, 0.0);
-        let stencil = Stencil::new(&s.model, 0.0);
-        let home = s.map.grid().cell_at(Point2::origin()).unwrap();
-        for (x, y, ranges) in scans {
-            s.scan(x, y, &ranges);
-            check_gains(&mut s, &stencil, home)?;
-        }
+        let s = setting_of(&model, &ring(offset), parameters);
+        check_gains_after_every_scan(s, scans)?;
     }
 
     #[test]
@@ -178,14 +181,8 @@ proptest! {
     ) {
         let model = ModelParameters { usable_range: 1.5, tempering, ..ModelParameters::b21r() };
         let parameters = PlannerParameters { strategy: Strategy::Ig, ..PlannerParameters::standard() };
-        let mut s = setting_of(&model, &SonarRing::b21r(), parameters);
-        s.stand(0.0, 0.0);
-        let stencil = Stencil::new(&s.model, 0.0);
-        let home = s.map.grid().cell_at(Point2::origin()).unwrap();
-        for (x, y, ranges) in scans {
-            s.scan(x, y, &ranges);
-            check_gains(&mut s, &stencil, home)?;
-        }
+        let s = setting_of(&model, &SonarRing::b21r(), parameters);
+        check_gains_after_every_scan(s, scans)?;
     }
 
     #[test]

@@ -10,7 +10,7 @@
 //! so that no product is normalised, one logarithm is enough, and nothing large cancels: weak
 //! evidence (small e) has small terms only.
 
-use super::lanes::{LANES, Lanes, ln};
+use covmap::lanes::{LANES, Lanes, ln};
 use covmap_model::{Outcome, SensorModel};
 
 /// p(c | d) of Eq. (9) for cells at one distance.

@@ -5,11 +5,12 @@
 //! summed over the cells of each beam of each view-point, [`LANES`] neighbours of a row side by
 //! side.
 
-use super::lanes::{LANES, Lanes};
 use super::rings::{Ring, Shares, Source, TOGETHER, rings};
 use crate::Stencil;
 use crate::cells::Cells;
+use crate::view_points::groups;
 use covmap::Grid;
+use covmap::lanes::{LANES, Lanes};
 use covmap_model::SensorModel;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -112,7 +113,7 @@ impl Sweep {
         let mut planes = vec![0.0f32; (high - low + 1 + 2 * self.border) * self.row];
         for (ring, runs) in self.rings.iter().zip(&self.runs) {
             let asked = self.asked(ring, runs, rows, low, high);
-            let blocks = self.blocks();
+            let blocks = groups(&self.grid);
             let filled = planes.par_chunks_mut(self.row).zip(asked.par_chunks(blocks)).enumerate();
             filled.with_min_len(together).for_each(|(y, (planes, asked))| {
                 let y = (y + low).checked_sub(self.border);
@@ -126,10 +127,6 @@ impl Sweep {
         }
     }
 
-    fn blocks(&self) -> usize {
-        self.grid.width().div_ceil(LANES)
-    }
-
     /// For every block of cells, which readings of a ring the units need.
     fn asked(
         &self,
@@ -139,7 +136,7 @@ impl Sweep {
         low: usize,
         high: usize,
     ) -> Vec<u8> {
-        let (blocks, border) = (self.blocks(), self.border);
+        let (blocks, border) = (groups(&self.grid), self.border);
         let mut asked = vec![0; (high - low + 1 + 2 * border) * blocks];
         let lanes = LANES.cast_signed();
         let nearest = ring.near.first().map_or(0, |(k, _)| *k);
@@ -224,7 +221,7 @@ impl WithSimd for Fill<'_> {
         let kinds =
             [(FRONT, 0..near), (NEAR, near..no_echo), (NO_ECHO, no_echo..ring.readings.len())];
         for (x, asked) in asked.iter().enumerate().filter(|(_, asked)| **asked != 0) {
-            let prior = cells.block(y * sweep.blocks() + x);
+            let prior = cells.block(y * groups(&sweep.grid) + x);
             let column = sweep.border + x * LANES;
             for (_, readings) in kinds.iter().filter(|(kind, _)| asked & kind != 0) {
                 for i in readings.clone() {
