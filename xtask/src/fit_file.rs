@@ -113,7 +113,7 @@ pub(crate) fn beside(path: &Path, named: &Path) -> PathBuf {
 
 impl Source {
     /// The file that it is made from.
-    fn file(&self) -> &Path {
+    pub(crate) fn file(&self) -> &Path {
         match self {
             Self::Simulated(source) => &source.scenario,
             Self::Recorded(source) => &source.log,

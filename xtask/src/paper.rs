@@ -8,6 +8,7 @@ mod fitting;
 mod html;
 mod limits;
 mod oblique;
+pub(crate) mod ranking;
 mod report;
 pub(crate) mod runs;
 pub(crate) mod session;
@@ -80,7 +81,8 @@ fn evidence(session: &Session<'_>, output: &Output) -> Result<[Evidence; 2]> {
             at_view_points,
             while_driving,
             places,
-            limits: Limits::measure(&config)?,
+            limits: Limits::measure(&config, session)?,
+            speed: config.robot.speed,
         });
     }
     evidence.try_into().map_err(|_| anyhow::anyhow!("an experiment has no data"))

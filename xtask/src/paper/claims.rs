@@ -4,6 +4,8 @@
 //! ends, is no verdict but a test of the planner.
 
 mod counting;
+mod explored;
+mod meeting;
 mod model;
 mod places;
 mod strategies;
@@ -13,10 +15,11 @@ use super::fitting::Fitting;
 use super::limits::Limits;
 use super::oblique::Oblique;
 use super::runs::Runs;
-use super::trial::{Finding, Trial};
+use super::trial::Finding;
 use crate::figures::partial_cells::PartialCell;
 use covmap_model::SensorModel;
 use covmap_plan::Strategy;
+use explored::explored;
 
 /// All that the claims are judged by, for one configuration.
 #[derive(Debug)]
@@ -41,6 +44,8 @@ pub(crate) struct Evidence {
     pub(crate) places: Runs,
     /// The ends of IG_CL.
     pub(crate) limits: Limits,
+    /// How fast the robot drives \[m/s\].
+    pub(crate) speed: f64,
 }
 
 /// Claims 1–17 and 19–21.
@@ -53,7 +58,7 @@ pub(crate) fn all(e: &Evidence) -> Vec<Finding> {
         counting::claim_5(&e.corridor),
         counting::claim_6(&e.corridor),
         counting::claim_7(&e.corridor),
-        counting::claim_8(&e.counting),
+        meeting::claim_8(&e.counting),
         counting::claim_9(&e.corridor),
         strategies::claim_10(&e.at_view_points),
         strategies::claim_11(&e.at_view_points),
@@ -63,7 +68,7 @@ pub(crate) fn all(e: &Evidence) -> Vec<Finding> {
         trade_off::claim_15(&e.at_view_points, &e.while_driving),
         trade_off::claim_16(&e.limits, &e.at_view_points),
         places::claim_17(&e.at_view_points, &e.places),
-        strategies::claim_19(&e.while_driving),
+        strategies::claim_19(&e.while_driving, e.speed),
         counting::claim_20(&e.corridor),
         model::claim_21(&e.oblique),
     ]
@@ -78,26 +83,3 @@ const COMPLETENESS: &str = "completeness";
 pub(crate) const EXTENDED: Strategy = Strategy::Count { times: 50.0, half_distance: Some(2.0) };
 /// Counting with n = 1.
 pub(crate) const ONCE: Strategy = Strategy::Count { times: 1.0, half_distance: None };
-
-/// Runs that did not explore their world say nothing about strategies: in at least nine of ten
-/// runs of each strategy, the robot must know nine tenths of what it could reach.
-fn explored(runs: &Runs, strategies: &[Strategy]) -> Trial {
-    let least = strategies.iter().map(|strategy| {
-        let all = runs.values(*strategy, COMPLETENESS);
-        let good = all.iter().filter(|c| **c >= 0.9).count();
-        (10 * good >= 9 * all.len().max(1), all)
-    });
-    let (mut holds, mut sum, mut count) = (true, 0.0, 0.0f64);
-    for (good, all) in least {
-        holds &= good;
-        sum += all.iter().sum::<f64>();
-        #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
-        let n = all.len() as f64;
-        count += n;
-    }
-    let mean = sum / count.max(1.0);
-    let what = format!(
-        "condition: the runs explored their world (of nine in ten, completeness ≥ .9; the mean is {mean:.2})"
-    );
-    Trial::condition(what, holds)
-}

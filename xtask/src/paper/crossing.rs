@@ -9,13 +9,36 @@ pub(crate) struct Point {
     pub(crate) share: f64,
 }
 
+/// Where the curves meet, as far as that was measured.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Crossing {
+    /// At this share.
+    At(f64),
+    /// Every counting run drives more than CL: if they meet, then below the smallest share that
+    /// counting came to.
+    Below(f64),
+    /// CL drives more than every counting run: if they meet, then above the largest share that
+    /// counting came to. Perhaps never.
+    Above(f64),
+}
+
+impl Crossing {
+    /// The smallest and the largest share at which they may meet; to meet never is to meet at 1.
+    pub(crate) fn ends(self) -> [f64; 2] {
+        match self {
+            Self::At(share) => [share, share],
+            Self::Below(share) => [0.0, share],
+            Self::Above(share) => [share, 1.0],
+        }
+    }
+}
+
 /// The share of cells that counting explores with the mean path of CL; whoever needs a larger
 /// share drives less with CL. `None` without runs of both.
 ///
 /// The curve is the monotone one that is nearest to the counting runs (isotonic regression of
-/// the share on the path). It is 0 if every counting run is longer than CL's, and 1 if none is:
-/// then CL is shorter nowhere.
-pub(crate) fn crossing(counting: &[Point], cl: &[Point]) -> Option<f64> {
+/// the share on the path).
+pub(crate) fn crossing(counting: &[Point], cl: &[Point]) -> Option<Crossing> {
     #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
     let mean = cl.iter().map(|point| point.path).sum::<f64>() / cl.len() as f64;
     let curve = curve(counting);
@@ -23,14 +46,16 @@ pub(crate) fn crossing(counting: &[Point], cl: &[Point]) -> Option<f64> {
     if cl.is_empty() {
         None
     } else if mean < first.path {
-        Some(0.0)
-    } else if mean >= last.path {
-        Some(1.0)
+        Some(Crossing::Below(first.share))
+    } else if mean > last.path {
+        Some(Crossing::Above(last.share))
     } else {
-        let next = curve.iter().position(|point| point.path > mean)?;
+        let Some(next) = curve.iter().position(|point| point.path > mean) else {
+            return Some(Crossing::At(last.share));
+        };
         let (a, b) = (curve[next - 1], curve[next]);
         let along = (mean - a.path) / (b.path - a.path);
-        Some(a.share + along * (b.share - a.share))
+        Some(Crossing::At(a.share + along * (b.share - a.share)))
     }
 }
 
@@ -76,8 +101,13 @@ mod tests {
     fn the_curves_meet_where_the_paths_are_equal() {
         let counting = points(&[(10.0, 0.2), (20.0, 0.6), (40.0, 0.8)]);
         let at = |path: f64| crossing(&counting, &points(&[(path, 0.99)])).unwrap();
-        assert!((at(15.0) - 0.4).abs() < 1e-12 && (at(30.0) - 0.7).abs() < 1e-12);
-        assert!(at(5.0) <= 0.0 && at(50.0) >= 1.0);
+        let ends = |path: f64| at(path).ends();
+        for (path, share) in [(15.0, 0.4), (30.0, 0.7)] {
+            assert!(ends(path).iter().all(|end| (end - share).abs() < 1e-12));
+        }
+        assert!(ends(5.0)[0] <= 0.0 && ends(50.0)[1] >= 1.0);
+        assert_eq!((at(5.0), at(50.0)), (Crossing::Below(0.2), Crossing::Above(0.8)));
+        assert_eq!(at(40.0), Crossing::At(0.8));
         assert_eq!(crossing(&counting, &[]), None);
         assert_eq!(crossing(&[], &counting), None);
     }

@@ -5,7 +5,9 @@ use crate::fit;
 use crate::fit_file::{FitFile, Source, examples};
 use crate::progress::Progress;
 use anyhow::Result;
+use covmap_explore::statistics::{Estimate, Grouped, bootstrap};
 use covmap_fit::{Example, score};
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Evaluations of the one search.
@@ -15,11 +17,16 @@ const QUICK_EVALUATIONS: usize = 12;
 const QUICK_SCANS: usize = 15;
 const QUICK_SIDE: f64 = 0.2;
 
+/// So often scenarios are resampled, and with which seed.
+const RESAMPLES: usize = 2000;
+const SEED: u64 = 4;
+
 /// What a fit came to.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Fitting {
-    /// The objective on each held-out world, fitted less unfitted \[nats\].
-    pub(crate) differences: Vec<f64>,
+    /// The objective on each held-out world, fitted less unfitted \[nats\]: a group for each
+    /// scenario, since another pose of the same scenario is no independent world.
+    pub(crate) by_scenario: Grouped<f64>,
     /// How it was fitted.
     pub(crate) what: String,
 }
@@ -51,8 +58,12 @@ impl Fitting {
             let after = file.weighting.objective(&score(example, &fitted.parameters)?);
             Ok(after - file.weighting.objective(&score(example, &config.model)?))
         };
+        let mut by_scenario: BTreeMap<&Path, Vec<f64>> = BTreeMap::new();
+        for (source, example) in file.held_out.iter().zip(&held_out) {
+            by_scenario.entry(source.file()).or_default().push(difference(example)?);
+        }
         Ok(Self {
-            differences: held_out.iter().map(difference).collect::<Result<_>>()?,
+            by_scenario: by_scenario.into_values().collect(),
             what: format!(
                 "{}: one search of at most {} evaluations on {} worlds, r = {} m",
                 path.display(),
@@ -60,6 +71,19 @@ impl Fitting {
                 training.len(),
                 config.resolution
             ),
+        })
+    }
+    /// How many held-out worlds there are.
+    pub(crate) fn worlds(&self) -> usize {
+        self.by_scenario.iter().map(Vec::len).sum()
+    }
+
+    /// The mean difference over held-out worlds, with its error by resampling scenarios.
+    pub(crate) fn mean_difference(&self) -> Option<Estimate> {
+        bootstrap(&self.by_scenario, RESAMPLES, SEED, |drawn| {
+            #[allow(clippy::cast_precision_loss, reason = "a few worlds")]
+            let n = drawn.len() as f64;
+            (!drawn.is_empty()).then(|| drawn.iter().copied().sum::<f64>() / n)
         })
     }
 }

@@ -1,16 +1,21 @@
 //! The ends of Eq. (16): IG_CL with α = 0 and α = 10⁹ against CL and IG (claim 16).
 
+use super::session::Session;
 use anyhow::Result;
-use covmap_explore::{Config, Event, Limits as Budget, Mission, SimulatedRobot, explore};
+use covmap_explore::{
+    Config, Ending, Event, Limits as Budget, Mission, SimulatedRobot, View, explore,
+};
 use covmap_io::parse_ron;
 use covmap_plan::Strategy;
 use covmap_sonar::Scan;
 use covmap_world::{Scenario, World};
-use std::ops::ControlFlow;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
 use std::path::Path;
 
-/// A run is compared up to so many scans.
-const SCANS: usize = 150;
+/// A run is compared up to so many scans, if it does not end before.
+const SCANS: usize = 2000;
+const QUICK_SCANS: usize = 400;
 /// Cells of this side \[m\], so that it is quick.
 const SIDE: f64 = 0.2;
 
@@ -23,34 +28,68 @@ pub(crate) struct Limits {
     pub(crate) what: String,
 }
 
+/// What a run measured, in order.
+#[derive(Debug, Clone, PartialEq)]
+struct Trace {
+    scans: Vec<Scan>,
+    ending: Ending,
+}
+
 impl Limits {
     /// Explores a small world with all four.
-    pub(crate) fn measure(config: &Config) -> Result<Self> {
+    pub(crate) fn measure(config: &Config, session: &Session<'_>) -> Result<Self> {
         let text = include_str!("../../../scenarios/lab.ron");
         let scenario: Scenario = parse_ron(Path::new("scenarios/lab.ron"), text)?;
         let world = World::from_scenario(&scenario, config.sonar.surface)?;
-        let trace = |strategy| trace(&world, config, strategy);
-        let (zero, cl) = (trace(Strategy::IgCl { alpha: 0.0 })?, trace(Strategy::Cl)?);
-        let (huge, ig) = (trace(Strategy::IgCl { alpha: 1e9 })?, trace(Strategy::Ig)?);
+        let most = if session.quick { QUICK_SCANS } else { SCANS };
+        let four = [
+            Strategy::IgCl { alpha: 0.0 },
+            Strategy::Cl,
+            Strategy::IgCl { alpha: 1e9 },
+            Strategy::Ig,
+        ];
+        let trace = |strategy| trace(&world, config, strategy, most, session);
+        let traces: Vec<Trace> = four.into_par_iter().map(trace).collect::<Result<_>>()?;
+        session.check()?;
+        let [zero, cl, huge, ig] = &traces[..] else { anyhow::bail!("a run is missing") };
         Ok(Self {
             zero_is_cl: zero == cl,
             huge_is_ig: huge == ig,
             what: format!(
-                "compared on lab.ron, r = {SIDE} m, seed 1, up to {SCANS} scans (CL made {}, IG {})",
-                cl.len(),
-                ig.len()
+                "compared on lab.ron, r = {SIDE} m, seed 1, up to {most} scans: {}, {}",
+                cl.in_words("CL"),
+                ig.in_words("IG")
             ),
         })
     }
 }
 
+impl Trace {
+    fn in_words(&self, name: &str) -> String {
+        let whole = if self.ending == Ending::BudgetSpent { "was cut" } else { "ended" };
+        let place = |scan: &Scan| {
+            let at = scan.pose.translation.vector;
+            [at.x.to_bits(), at.y.to_bits()]
+        };
+        let places: BTreeSet<[u64; 2]> = self.scans.iter().map(place).collect();
+        format!("{name} {whole} after {} in {} places", self.scans.len(), places.len())
+    }
+}
+
 /// All scans of a run: places, times and ranges to the last bit.
-fn trace(world: &World, config: &Config, strategy: Strategy) -> Result<Vec<Scan>> {
+fn trace(
+    world: &World,
+    config: &Config,
+    strategy: Strategy,
+    most: usize,
+    session: &Session<'_>,
+) -> Result<Trace> {
     let mut config = Config { resolution: SIDE, ..config.clone() };
     config.planner.strategy = strategy;
-    let budget = Budget { max_scans: Some(SCANS), ..Budget::default() };
+    let budget = Budget { max_scans: Some(most), ..Budget::default() };
     let mission = Mission::new(world, &config, None, budget)?;
     let mut robot = SimulatedRobot::new(world, &config, 1)?;
-    let on = &mut |_: &Event, _: &covmap_explore::View<'_>| ControlFlow::Continue(());
-    Ok(explore(&mission, &mut robot, on)?.scans)
+    let on = &mut |_: &Event, _: &View<'_>| session.interrupt.flow();
+    let run = explore(&mission, &mut robot, on)?;
+    Ok(Trace { scans: run.scans, ending: run.ending })
 }

@@ -11,7 +11,7 @@ use nalgebra::{Isometry2, Point2};
 use rayon::prelude::*;
 
 /// A wall is turned by each of these [°].
-const TURNS: [f64; 3] = [7.0, 17.0, 29.0];
+const TURNS: [f64; 6] = [7.0, 12.0, 17.0, 23.0, 29.0, 38.0];
 /// The robot drives past it at this distance \[m\], and measures so often …
 const AWAY: [f64; 2] = [0.8, 1.2];
 const SCANS: usize = 40;
@@ -20,8 +20,9 @@ const LENGTH: f64 = 2.0;
 /// From this distance \[m\] on cells are not looked at.
 const RANGE: f64 = 2.0;
 
-/// Each unit is a (wall and distance, seed) with mean occupancy, error of the occupancy, and
-/// error of the expected coverage over the partly covered cells in sight.
+/// Each unit is a (distance, seed) with mean occupancy, error of the occupancy, and error of the
+/// expected coverage over the partly covered cells in sight; a group is what was measured of one
+/// wall.
 #[derive(Debug, Clone)]
 pub(crate) struct Oblique(pub(crate) Units);
 
@@ -30,14 +31,13 @@ impl Oblique {
     pub(crate) const OCCUPANCY_ERROR: usize = 1;
     pub(crate) const COVERAGE_ERROR: usize = 2;
 
-    /// Drives past three walls at two distances, with the seeds 1, 2, … `seeds`.
+    /// Drives past each wall at two distances, with the seeds 1, 2, … `seeds`.
     pub(crate) fn measure(config: &Config, seeds: u64) -> Result<Self> {
-        let cases: Vec<(f64, f64)> =
-            TURNS.iter().flat_map(|turn| AWAY.map(|away| (turn.to_radians(), away))).collect();
-        let group = |(turn, away): (f64, f64)| -> Result<Vec<Vec<f64>>> {
-            (1..=seeds).map(|seed| unit(config, turn, away, seed)).collect()
+        let group = |turn: f64| -> Result<Vec<Vec<f64>>> {
+            let units = AWAY.into_iter().flat_map(|away| (1..=seeds).map(move |s| (away, s)));
+            units.map(|(away, seed)| unit(config, turn.to_radians(), away, seed)).collect()
         };
-        Ok(Self(Units(cases.into_par_iter().map(group).collect::<Result<_>>()?)))
+        Ok(Self(Units(TURNS.into_par_iter().map(group).collect::<Result<_>>()?)))
     }
 }
 
@@ -88,4 +88,17 @@ fn unit(config: &Config, turn: f64, away: f64, seed: u64) -> Result<Vec<f64>> {
         }
     }
     Ok(sums.into_iter().map(|sum| sum / f64::max(count, 1.0)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_measured_of_one_wall_is_one_group() {
+        let config = Config { resolution: 0.2, ..Config::b21r() };
+        let Oblique(Units(groups)) = Oblique::measure(&config, 1).unwrap();
+        assert_eq!(groups.len(), TURNS.len());
+        assert!(groups.iter().all(|group| group.len() == AWAY.len()));
+    }
 }

@@ -56,8 +56,10 @@ struct Second<'a> {
 }
 
 const RULE: &str = "all trials must hold; Student's t on the standard error of a bootstrap over starts \
-                    (2000 resamples; claims 1 and 2: Agresti–Coull over seeds; 4: over worlds; 21: \
-                    over walls), 95 %; Holm over all claims of the configuration at .05";
+                    (2000 resamples; claims 1 and 2: Agresti–Coull over seeds; 4: over scenarios; 8: \
+                    the mean over starts; 21: over walls), 95 %; what rests on fewer than three groups, or on \
+                    groups that are all alike, decides nothing; Holm over all claims of the \
+                    configuration at .05";
 
 /// The figures in the order of the paper; those that are there are shown.
 const FIGURES: [(&str, &[&str]); 7] = [
@@ -170,7 +172,9 @@ impl Report {
                     let p = [trial.p_holds, trial.p_fails].map(digits);
                     let [holds, fails] =
                         if trial.exact { ["–", "–"].map(str::to_owned) } else { p };
-                    vec![trial.what.clone(), value, trial.bound.clone(), holds, fails]
+                    let what = [Some(&trial.what), trial.reason.as_ref()];
+                    let what = what.into_iter().flatten().cloned().collect::<Vec<_>>().join(": ");
+                    vec![what, value, trial.bound.clone(), holds, fails]
                 };
                 let rows: Vec<Vec<String>> = judged.finding.trials.iter().map(row).collect();
                 page.table(&["test", "value [95 %]", "must be", "p it is not", "p it is"], &rows);
@@ -228,7 +232,8 @@ fn figures(judged: &Judged) -> Vec<String> {
     let trial = |trial: &Trial| {
         let value =
             if trial.exact { trial.bound.clone() } else { shown(trial.value, trial.interval) };
-        format!("{}: {value}", trial.what)
+        let reason = trial.reason.as_ref().map(|reason| format!(" ({reason})"));
+        format!("{}: {value}{}", trial.what, reason.unwrap_or_default())
     };
     judged.finding.trials.iter().map(trial).chain(judged.finding.notes.iter().cloned()).collect()
 }

@@ -123,6 +123,12 @@ impl Runs {
 }
 
 impl Units {
+    /// One number for each unit, made of its numbers.
+    pub(crate) fn each(&self, of: impl Fn(&[f64]) -> f64) -> Self {
+        let group = |units: &Vec<Vec<f64>>| units.iter().map(|unit| vec![of(unit)]).collect();
+        Self(self.0.iter().map(group).collect())
+    }
+
     /// A statistic of the units with its error, by resampling starts.
     pub(crate) fn estimate(
         &self,
@@ -179,17 +185,25 @@ pub(crate) fn made_up(rows: &[Row<'_>]) -> Runs {
 }
 
 /// A series for tests: for each strategy and metric a mean, with a small spread over four starts
-/// and two seeds.
+/// and two seeds, and a smaller one that neither strategies nor metrics share.
 #[cfg(test)]
 pub(crate) fn series(strategies: &[(&str, &[(&str, f64)])]) -> Runs {
+    const OWN: [[f64; 4]; 3] =
+        [[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0], [1.0, -1.0, -1.0, 1.0]];
+    #[allow(clippy::cast_precision_loss, reason = "small numbers")]
+    let spread = |i: usize, start: usize, seed: u64| {
+        let own = 0.001 * (1.0 + i as f64) * OWN[i % 3][start];
+        1.0 + own + 0.01 * ((start as f64) - 1.5) + 0.004 * (seed as f64 - 1.5)
+    };
     let mut runs = Vec::new();
-    for (strategy, values) in strategies {
+    for (place, (strategy, values)) in strategies.iter().enumerate() {
         for start in 0..4usize {
             for seed in 1..=2u64 {
-                #[allow(clippy::cast_precision_loss, reason = "small numbers")]
-                let spread = 1.0 + 0.01 * ((start as f64) - 1.5) + 0.004 * (seed as f64 - 1.5);
-                let values: Vec<(&str, f64)> =
-                    values.iter().map(|(name, value)| (*name, value * spread)).collect();
+                let values: Vec<(&str, f64)> = values
+                    .iter()
+                    .enumerate()
+                    .map(|(i, (name, value))| (*name, value * spread(place + i, start, seed)))
+                    .collect();
                 runs.extend(made_up(&[(*strategy, start, seed, &values)]).runs);
             }
         }

@@ -29,6 +29,8 @@ pub(crate) struct Trial {
     pub(crate) p_fails: f64,
     /// Whether there is no chance in it.
     pub(crate) exact: bool,
+    /// Why the number decides nothing, or what else there is to say of it.
+    pub(crate) reason: Option<String>,
 }
 
 /// A claim with all its tests.
@@ -67,24 +69,48 @@ pub(crate) struct Judged {
 
 /// At this level a claim is decided.
 const LEVEL: f64 = 0.05;
+/// A number that rests on fewer independent groups than this decides nothing.
+const FEWEST_GROUPS: usize = 3;
+/// A standard error below this part of the number is rounding.
+const ROUNDING: f64 = 1e-12;
 
 impl Trial {
     /// A number with its error. Without data nothing is decided.
     pub(crate) fn new(what: impl Into<String>, estimate: Option<Estimate>, bound: Bound) -> Self {
-        let (p_holds, p_fails) = estimate.map_or((1.0, 1.0), |e| match bound {
+        let reason = estimate.map_or(Some("no data".to_owned()), |e| says_nothing(&e));
+        let p = |e: Estimate| match bound {
             Bound::Below(limit) => (e.p_below(limit), e.p_above(limit)),
             Bound::Above(limit) => (e.p_above(limit), e.p_below(limit)),
             Bound::Between(low, high) => (e.p_between(low, high), e.p_outside(low, high)),
-        });
+        };
+        let (p_holds, p_fails) = estimate.filter(|_| reason.is_none()).map_or((1.0, 1.0), p);
         Self {
             what: what.into(),
             value: estimate.map(|e| e.value),
-            interval: estimate.and_then(|e| e.interval(0.95)),
+            interval: estimate.and_then(|e| e.interval(0.95)).filter(|_| reason.is_none()),
             bound: bound.to_string(),
             p_holds,
             p_fails,
             exact: false,
+            reason,
         }
+    }
+
+    /// A number of which only the ends are known between which it lies, and that must not exceed
+    /// a limit: its upper end speaks for the claim, its lower end against it.
+    pub(crate) fn between_ends(
+        what: impl Into<String>,
+        ends: Option<[Estimate; 2]>,
+        limit: f64,
+    ) -> Self {
+        let end = |at: usize| Self::new("", ends.map(|ends| ends[at]), Bound::Below(limit));
+        Self { what: what.into(), p_fails: end(0).p_fails, ..end(1) }
+    }
+
+    /// Says more about it.
+    pub(crate) fn saying(self, reason: Option<String>) -> Self {
+        let reasons: Vec<String> = self.reason.into_iter().chain(reason).collect();
+        Self { reason: (!reasons.is_empty()).then(|| reasons.join("; ")), ..self }
     }
 
     /// Something that is so or is not.
@@ -97,6 +123,7 @@ impl Trial {
             p_holds: f64::from(u8::from(!holds)),
             p_fails: f64::from(u8::from(holds)),
             exact: true,
+            reason: None,
         }
     }
 
@@ -181,6 +208,22 @@ pub(crate) fn judge(findings: Vec<Finding>) -> Vec<Judged> {
     findings.into_iter().zip(adjusted).map(one).collect()
 }
 
+/// Why an estimate must not decide: it rests on too few groups, or these are all alike, so that
+/// its error is not known.
+fn says_nothing(estimate: &Estimate) -> Option<String> {
+    let Estimate { value, standard_error, groups } = *estimate;
+    if groups < FEWEST_GROUPS {
+        return Some(format!(
+            "decides nothing: it rests on {groups} independent group{}, and {FEWEST_GROUPS} are needed",
+            if groups == 1 { "" } else { "s" }
+        ));
+    }
+    let known = standard_error.is_finite() && standard_error > ROUNDING * (1.0 + value.abs());
+    (!known).then(|| {
+        format!("decides nothing: its error is not known, for all {groups} groups are alike")
+    })
+}
+
 impl fmt::Display for Bound {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -254,6 +297,32 @@ mod tests {
             finding(vec![at(0.5, 0.05), Trial::new("y", None, Bound::Above(0.0))]),
             Verdict::Undecided,
         );
+    }
+
+    #[test]
+    fn few_groups_and_groups_that_are_all_alike_decide_nothing() {
+        let trial = |value: f64, standard_error: f64, groups: usize| {
+            let estimate = Estimate { value, standard_error, groups };
+            Trial::new("x", Some(estimate), Bound::Below(1.0))
+        };
+        for value in [0.5, 1.5] {
+            check(finding(vec![trial(value, 0.0, 6)]), Verdict::Undecided);
+            check(finding(vec![trial(value, 1e-17, 6)]), Verdict::Undecided);
+            check(finding(vec![trial(value, 1e-6, 2)]), Verdict::Undecided);
+        }
+        check(finding(vec![trial(0.5, 0.01, 3)]), Verdict::Reproduced);
+        assert!(trial(0.5, 0.0, 6).reason.unwrap().contains("all 6 groups are alike"));
+        assert!(trial(0.5, 0.1, 2).reason.unwrap().contains("rests on 2 independent groups"));
+        assert_eq!(trial(0.5, 0.01, 3).reason, None);
+    }
+
+    #[test]
+    fn of_a_number_between_two_ends_the_worse_one_counts() {
+        let end = |value| Estimate { value, standard_error: 0.01, groups: 5 };
+        let trial = |low, high| Trial::between_ends("x", Some([end(low), end(high)]), 0.9);
+        check(finding(vec![trial(0.5, 0.6)]), Verdict::Reproduced);
+        check(finding(vec![trial(0.95, 1.0)]), Verdict::NotReproduced);
+        check(finding(vec![trial(0.5, 1.0)]), Verdict::Undecided);
     }
 
     #[test]

@@ -1,12 +1,9 @@
-//! Section 5.1: coverage maps against scan counting. Claims 5–9 and 20.
+//! Section 5.1: coverage maps against scan counting. Claims 5–7, 9 and 20.
 
 use super::{EXTENDED, ONCE, PATH, explored};
-use crate::paper::crossing::{Point, crossing};
 use crate::paper::runs::Runs;
 use crate::paper::trial::{Bound, Finding, Trial};
-use covmap_explore::statistics::{Estimate, Grouped, bootstrap};
 use covmap_plan::Strategy;
-use std::collections::BTreeMap;
 
 const UNCERTAIN: &str = "share_uncertain";
 const EXPLORED: &str = "share_explored";
@@ -83,44 +80,6 @@ pub(crate) fn claim_7(runs: &Runs) -> Finding {
     .figure("smallest", metric("measurements.min").mean(0))
 }
 
-/// Fig. 6: from which share of explored cells on CL's path is shorter.
-pub(crate) fn claim_8(runs: &Runs) -> Finding {
-    Finding::new(
-        8,
-        "Fig. 6: if more than 85 % of the cells are to be explored well enough, CL's path is shorter than that of extended counting (the share where the curves meet is at most .90)",
-        vec![
-            explored(runs, &[Strategy::Cl]),
-            Trial::new(
-                "share of explored cells where the curves meet, discounted counts",
-                meeting(runs, true),
-                Bound::Below(0.90),
-            ),
-        ],
-    )
-    .figure("the same, every beam counting fully", meeting(runs, false))
-    .figure("share that CL explores", runs.paired(&[Strategy::Cl], EXPLORED).mean(0))
-}
-
-/// The share of explored cells at which the curve of the counting runs has CL's path.
-fn meeting(runs: &Runs, discounted: bool) -> Option<Estimate> {
-    let mut starts: BTreeMap<usize, Vec<(bool, Point)>> = BTreeMap::new();
-    for run in &runs.runs {
-        let point = Point { path: run.value(PATH), share: run.value(EXPLORED) };
-        match run.strategy {
-            Strategy::Cl => starts.entry(run.start).or_default().push((true, point)),
-            Strategy::Count { half_distance, .. } if half_distance.is_some() == discounted => {
-                starts.entry(run.start).or_default().push((false, point));
-            }
-            _ => {}
-        }
-    }
-    let groups: Grouped<(bool, Point)> = starts.into_values().collect();
-    bootstrap(&groups, 2000, 6, |drawn| {
-        let of = |is_cl: bool| drawn.iter().filter(move |(cl, _)| *cl == is_cl).map(|(_, p)| *p);
-        crossing(&of(false).collect::<Vec<_>>(), &of(true).collect::<Vec<_>>())
-    })
-}
-
 /// Footnote 2: counting with n* explores nearly all.
 pub(crate) fn claim_9(runs: &Runs) -> Finding {
     let n_star = with_n_star(runs);
@@ -163,7 +122,7 @@ pub(crate) fn claim_20(runs: &Runs) -> Finding {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::paper::runs::{made_up, series};
+    use crate::paper::runs::series;
     use crate::paper::trial::{Verdict, check};
 
     fn table_1(uncertain: [f64; 3], path: [f64; 3]) -> Runs {
@@ -207,33 +166,6 @@ mod tests {
         check(claim_7(&runs(80.0, 0.9)), Verdict::Reproduced);
         check(claim_7(&runs(20.0, 0.9)), Verdict::NotReproduced);
         check(claim_7(&Runs::default()), Verdict::Undecided);
-    }
-
-    fn fig_6(cl: (f64, f64)) -> Runs {
-        let mut runs = Runs::default();
-        for start in 0..4usize {
-            let name = |n: u32| format!("COUNT:{n}:2");
-            let add = |runs: &mut Runs, strategy: &str, path: f64, share: f64| {
-                let values =
-                    [("path_length_m", path), ("share_explored", share), ("completeness", 0.99)];
-                runs.runs.extend(made_up(&[(strategy, start, 1, &values)]).runs);
-            };
-            for n in 1..=10u32 {
-                #[allow(clippy::cast_precision_loss, reason = "small")]
-                let path = 10.0 * f64::from(n) + start as f64;
-                add(&mut runs, &name(n), path, f64::from(n) / 10.0);
-            }
-            #[allow(clippy::cast_precision_loss, reason = "small")]
-            add(&mut runs, "CL", cl.0 + start as f64, cl.1);
-        }
-        runs
-    }
-
-    #[test]
-    fn claim_8_is_where_the_curves_meet() {
-        check(claim_8(&fig_6((60.0, 0.99))), Verdict::Reproduced);
-        check(claim_8(&fig_6((99.0, 0.99))), Verdict::NotReproduced);
-        check(claim_8(&Runs::default()), Verdict::Undecided);
     }
 
     #[test]
