@@ -2,8 +2,8 @@
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
 use covmap_explore::{
-    Config, Ending, Event, Limits, Mission, RecordedRobot, Run, SimulatedRobot, TraceHasher, Truth,
-    explore,
+    Accuracy, Config, Ending, Event, Limits, Mission, RecordedRobot, Run, SimulatedRobot,
+    TraceHasher, Truth, explore,
 };
 use covmap_plan::{CellStatus, Strategy};
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
@@ -172,4 +172,33 @@ fn an_empty_room_is_mapped_completely() {
     assert!(score.completeness > 0.97, "{score:?}");
     assert!(score.wall_recall > 0.8, "{score:?}");
     assert!(score.mean_log_likelihood.is_finite() && score.mae_mode >= 0.0);
+}
+
+#[test]
+fn maps_of_different_runs_are_compared_over_the_same_cells_and_the_body_pins_none_of_them() {
+    let obstacle = Shape::Rectangle { center: (2.6, 1.1), size: (0.5, 0.7), angle: 0.3 };
+    let world = world(vec![Obstacle { shape: obstacle, surface: Surface::Rough }]);
+    let mut scored = Vec::new();
+    let mut compared = Vec::new();
+    for (strategy, scans) in [(Strategy::Cl, 2), (Strategy::Ig, 60)] {
+        let config = config(strategy);
+        let limits = Limits { max_scans: Some(scans), ..Limits::default() };
+        let (run, ..) = run(&world, &config, 1, limits);
+        let mission = Mission::new(&world, &config, None, limits).unwrap();
+        let truth = Truth::new(&world, &mission);
+        let cells = truth.compared_cells(config.robot.radius);
+        assert!(cells.len() > 50 && cells.iter().all(|cell| !run.map.is_pinned(*cell)));
+        let own = truth.scored_cells(&world, &mission, &run);
+        let accuracy = Accuracy::new(&truth, &mission, &run.map, &own);
+        assert_eq!(accuracy.compared_cells, f64::from(u32::try_from(cells.len()).unwrap()));
+        // What is not known is uniform: half a coverage is missing of each end.
+        let nothing = covmap::CoverageMap::new(mission.grid, config.model.bins).unwrap();
+        let unknown = Accuracy::new(&truth, &mission, &nothing, &own);
+        assert!((unknown.compared.mae_solid - 0.5).abs() < 1e-6);
+        assert!(accuracy.mae_observable < unknown.mae_observable);
+        scored.push(own);
+        compared.push(cells);
+    }
+    assert_eq!(compared[0], compared[1]);
+    assert_ne!(scored[0], scored[1], "what a run could see differs");
 }

@@ -79,6 +79,8 @@ const SCANS: &str = "scans";
 const PATH: &str = "path_length_m";
 const COMPLETENESS: &str = "completeness";
 
+pub(crate) use counting::{MOST_COUNTS, measured_until_explored};
+
 /// Extended counting with n = 50, as in Table 1.
 pub(crate) const EXTENDED: Strategy = Strategy::Count { times: 50.0, half_distance: Some(2.0) };
 /// Counting with n = 1.

@@ -1,14 +1,13 @@
 //! Which campaigns the figures and claims need, and how they are made quick.
 
+use super::claims::{MOST_COUNTS, measured_until_explored};
 use super::runs::Runs;
 use super::session::{Series, Session};
 use crate::campaign::{Campaign, Setting, Starts};
 use anyhow::Result;
 use covmap_plan::Strategy;
+use std::fmt::Write;
 use std::path::Path;
-
-/// n* is not looked for beyond four times the paper's 130.
-const MOST_COUNTS: f64 = 520.0;
 
 /// A quick run ends after so many scans.
 pub(super) const QUICK_SCANS: usize = 1000;
@@ -50,14 +49,16 @@ impl Series {
 /// largest discounted number of measurements that a cell had when CL first explored it.
 pub(crate) fn n_star(session: &Session<'_>, table_1: &Series) -> Result<Series> {
     let mut campaign = table_1.campaign.clone();
-    campaign.name = format!("{}-n-star", campaign.name);
+    campaign.name.push_str("-n-star");
     let mut settings = Vec::new();
     for setting in &table_1.campaign.settings {
         let runs = Runs::of(&table_1.campaign, &setting.name, &table_1.records);
-        let needed = runs.values(Strategy::Cl, "measurements.until_explored_discounted");
-        let times = needed.into_iter().fold(1.0, f64::max).ceil().min(MOST_COUNTS);
+        let [_, weight] = measured_until_explored(&runs);
+        let times = weight.max(1.0).ceil().min(MOST_COUNTS);
         // The same count as in Table 1 has been run already.
         let times = if (times - 50.0).abs() < 0.5 { 51.0 } else { times };
+        // Counts that change are another campaign, in a folder of its own.
+        let _ = write!(campaign.name, "-{times}");
         let strategy = Strategy::Count { times, half_distance: Some(2.0) };
         settings.push(Setting { strategies: Some(vec![strategy]), ..setting.clone() });
     }
@@ -74,8 +75,8 @@ pub(crate) fn ablation(session: &Session<'_>) -> Result<Series> {
     if session.quick {
         campaign.name.push_str("-quick");
         campaign.starts = Starts::Given;
-        // In coarse cells all the same.
-        campaign.settings.retain(|setting| !setting.overrides.contains_key("resolution"));
+        // In coarse cells, all of them: the one setting with fine cells would be the first again.
+        campaign.settings.retain(|setting| setting.overrides.contains_key("resolution"));
         campaign.worlds.iter_mut().for_each(|world| world.resolution = Some(0.2));
         campaign.settings.iter_mut().for_each(|setting| setting.max_scans = Some(QUICK_SCANS));
     }

@@ -199,6 +199,10 @@ impl Report {
 
     fn beyond(&self, page: &mut Page) {
         page.heading(2, "Beyond the paper");
+        page.paragraph(
+            "Maps are compared over one set of cells for all runs in a world: what can be seen from where the robot \
+             can stand, without the free cells that its body may be over. What a map does not know is uniform.",
+        );
         let mut table = |heading: &str, (columns, rows): Table| {
             page.heading(3, heading);
             page.table(&columns, &rows);

@@ -8,14 +8,16 @@ use covmap_plan::Strategy;
 /// A table with its columns.
 pub(super) type Table = (Vec<&'static str>, Vec<Vec<String>>);
 
-/// How accurate the final maps are, against the exact truth.
+/// How accurate the final maps are, against the exact truth, over the same cells for all runs in a
+/// world.
 pub(super) fn accuracy(runs: &Runs) -> Table {
     let metrics = [
-        ("log-likelihood [nats]", "mean_log_likelihood"),
-        ("CRPS", "crps"),
-        ("error, free", "mae_free"),
-        ("error, partial", "mae_partial"),
-        ("error, solid", "mae_solid"),
+        ("log-likelihood [nats]", "log_likelihood_observable"),
+        ("CRPS", "crps_observable"),
+        ("error of the mode", "mae_observable"),
+        ("error, free", "mae_free_observable"),
+        ("error, partial", "mae_partial_observable"),
+        ("error, solid", "mae_solid_observable"),
         ("completeness", "completeness"),
         ("wall recall", "wall_recall"),
         ("phantoms", "phantom"),
@@ -60,9 +62,26 @@ pub(super) fn cost(runs: &Runs) -> Table {
 
 /// What becomes of the runs when one reading changes.
 pub(super) fn ablation(series: &Series) -> Table {
-    let columns =
-        ["setting", "strategy", "scans", "path [m]", "completeness", "wall recall", "explored"];
-    let metrics = ["scans", "path_length_m", "completeness", "wall_recall", "share_explored"];
+    let columns = [
+        "setting",
+        "strategy",
+        "scans",
+        "path [m]",
+        "completeness",
+        "wall recall",
+        "explored",
+        "H > .65",
+        "error of the mode",
+    ];
+    let metrics = [
+        "scans",
+        "path_length_m",
+        "completeness",
+        "wall_recall",
+        "share_explored",
+        "share_uncertain",
+        "mae_observable",
+    ];
     let rows = series.campaign.settings.iter().flat_map(|setting| {
         let runs = Runs::of(&series.campaign, &setting.name, &series.records);
         let row = |strategy: Strategy| {

@@ -1,12 +1,13 @@
 //! A series of runs: where they start, what is measured of each, and its mean.
 
 mod accuracy;
+mod compared;
 mod corners;
 mod spread;
 mod starts;
 mod tally;
 
-pub use accuracy::Accuracy;
+pub use accuracy::{Accuracy, Errors};
 pub use corners::corners;
 pub use spread::Spread;
 pub use starts::drawn_starts;
