@@ -34,9 +34,14 @@ impl Config {
             path: path.to_owned(),
             message: error.to_string(),
         };
+        let none = || OverrideError::NoParameter(path.to_owned());
+        if path.contains(['/', '~']) {
+            // In a pointer these have a meaning of their own.
+            return Err(none());
+        }
         let mut tree = serde_json::to_value(self).map_err(fail)?;
         let place = tree.pointer_mut(&format!("/{}", path.replace('.', "/")));
-        *place.ok_or_else(|| OverrideError::NoParameter(path.to_owned()))? = value.clone();
+        *place.ok_or_else(none)? = value.clone();
         serde_json::from_value(tree).map_err(fail)
     }
 }
@@ -67,6 +72,8 @@ mod tests {
             ("planner.scope", json!("Everything"), "\"planner.scope\": unknown variant"),
             ("model.bins", json!(1.5), "\"model.bins\": invalid type"),
             ("", json!(1.5), "is no parameter"),
+            ("model/bins", json!(12), "\"model/bins\" is no parameter"),
+            ("model.no~0echo", json!(12), "\"model.no~0echo\" is no parameter"),
         ] {
             let error = Config::b21r().overridden(path, &value).unwrap_err().to_string();
             assert!(error.contains(expected), "{error}");

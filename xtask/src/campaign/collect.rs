@@ -1,6 +1,7 @@
 //! `collect`: what several machines did becomes one campaign.
 
-use super::folder::{self, Folder, Manifest};
+use super::folder::{self, Folder, Manifest, Planned, Recorded};
+use super::record::RunRecord;
 use super::tables;
 use crate::arguments::Collect;
 use crate::say;
@@ -13,6 +14,9 @@ pub(crate) fn run(arguments: &Collect) -> Result<ExitCode> {
     let Collect { dirs, out, quiet } = arguments;
     let out = out.as_deref().unwrap_or(&dirs[0]);
     let manifest = manifest(dirs)?;
+    if let Some(present) = Manifest::read(out)? {
+        check_version((out, &present), (&dirs[0], &manifest))?;
+    }
     // Which folder has a run; the first of several, since all are the same.
     let mut found: BTreeMap<&str, &Path> = BTreeMap::new();
     let mut damaged: BTreeMap<&str, PathBuf> = BTreeMap::new();
@@ -33,10 +37,13 @@ pub(crate) fn run(arguments: &Collect) -> Result<ExitCode> {
         say::note(format!("{}: is damaged, and is left out", file.display()));
     }
     let folder = Folder::open(out, &manifest)?;
+    tables::remove(out)?;
     for (id, dir) in found.iter().filter(|(_, dir)| **dir != out) {
         folder::copy(dir, &folder, id)?;
     }
-    let (records, _) = folder::read_all(out, &manifest);
+    let runs: Vec<&Planned> = manifest.runs.iter().collect();
+    let recorded = folder::read_all(out, &runs, false);
+    let records: Vec<RunRecord> = recorded.into_iter().filter_map(Recorded::whole).collect();
     tables::write(out, &manifest.metrics, &records)?;
     if records.len() < manifest.runs.len() {
         let missing = manifest.runs.len() - records.len();
@@ -71,15 +78,23 @@ fn manifest(dirs: &[PathBuf]) -> Result<Manifest> {
                 first.name
             );
         }
-        if other.version != first.version {
-            bail!(
-                "{}: was made by covmap {}, {} by {}; results of different versions are not mixed",
-                dir.display(),
-                other.version,
-                dirs[0].display(),
-                first.version
-            );
-        }
+        check_version((dir, &other), (&dirs[0], &first))?;
     }
     Ok(first)
+}
+
+fn check_version(
+    (dir, other): (&Path, &Manifest),
+    (first_dir, first): (&Path, &Manifest),
+) -> Result<()> {
+    if other.version == first.version {
+        return Ok(());
+    }
+    bail!(
+        "{}: was made by covmap {}, {} by {}; results of different versions are not mixed",
+        dir.display(),
+        other.version,
+        first_dir.display(),
+        first.version
+    )
 }

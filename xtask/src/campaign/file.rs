@@ -107,6 +107,13 @@ pub(crate) struct Seeds {
     pub(crate) count: usize,
 }
 
+impl NamedWorld {
+    /// Whether the campaign goes on without it.
+    pub(crate) fn is_left_out(&self) -> bool {
+        self.optional && !self.file.exists()
+    }
+}
+
 impl Campaign {
     /// Reads the file; what it names is found relative to it.
     pub(crate) fn read(path: &Path) -> Result<Self> {

@@ -6,6 +6,7 @@
 use super::digest::{Digest, checksum};
 use super::paths::Paths;
 use super::record::{RunKey, RunRecord, Value};
+use super::tables;
 use crate::input::about;
 use anyhow::{Result, anyhow, bail};
 use covmap_io::{read_json, write_json};
@@ -135,6 +136,7 @@ impl Folder {
         }
         let folder = Self { dir: dir.to_owned(), _lock: lock };
         if Manifest::read(dir)?.as_ref() != Some(manifest) {
+            tables::remove(dir)?;
             let list = dir.join(LIST);
             let partial = list.with_extension("partial");
             write_json(&partial, manifest)?;
@@ -192,20 +194,30 @@ pub(crate) enum Recorded {
     Damaged(PathBuf),
 }
 
-/// What is recorded of a run; its paths are looked at only if they are wanted.
+impl Recorded {
+    /// The run, if it is whole.
+    pub(crate) fn whole(self) -> Option<RunRecord> {
+        match self {
+            Self::Whole(record) => Some(*record),
+            Self::Missing | Self::Damaged(_) => None,
+        }
+    }
+}
+
+/// What is recorded of a run; whether its paths are whole is looked at only if they are wanted.
 pub(crate) fn read(dir: &Path, planned: &Planned, with_paths: bool) -> Recorded {
     let file = file(dir, &planned.id);
-    match File::open(&file) {
+    let opened = match File::open(&file) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Recorded::Missing,
         Err(_) => return Recorded::Damaged(file),
-        Ok(_) => {}
-    }
+        Ok(opened) => opened,
+    };
     let record = (|| {
-        let mut lines = Lines::open(&file)?;
+        let mut lines = Lines(BufReader::new(opened));
         let outcome: Outcome = lines.next()?;
         let times = lines.next()?;
         if with_paths {
-            lines.next::<Option<Paths>>()?;
+            lines.skip()?;
         }
         let same = outcome.id == planned.id && outcome.key == planned.key;
         same.then_some(RunRecord { key: outcome.key, values: outcome.values, times })
@@ -213,19 +225,9 @@ pub(crate) fn read(dir: &Path, planned: &Planned, with_paths: bool) -> Recorded 
     record.map_or(Recorded::Damaged(file), |record| Recorded::Whole(Box::new(record)))
 }
 
-/// All recorded runs of a campaign, in its order, and the files that are damaged.
-pub(crate) fn read_all(dir: &Path, manifest: &Manifest) -> (Vec<RunRecord>, Vec<PathBuf>) {
-    let all: Vec<Recorded> =
-        manifest.runs.par_iter().map(|planned| read(dir, planned, false)).collect();
-    let (mut records, mut damaged) = (Vec::new(), Vec::new());
-    for recorded in all {
-        match recorded {
-            Recorded::Whole(record) => records.push(*record),
-            Recorded::Damaged(file) => damaged.push(file),
-            Recorded::Missing => {}
-        }
-    }
-    (records, damaged)
+/// What is recorded of some runs, in their order, read side by side.
+pub(crate) fn read_all(dir: &Path, runs: &[&Planned], with_paths: bool) -> Vec<Recorded> {
+    runs.par_iter().map(|planned| read(dir, planned, with_paths)).collect()
 }
 
 /// The paths of a run in the folder of a campaign that keeps them.
@@ -253,11 +255,19 @@ impl Lines {
     }
 
     fn next<T: serde::de::DeserializeOwned>(&mut self) -> Option<T> {
+        self.checked(|line| serde_json::from_str(line).ok())
+    }
+
+    /// Checks a line without making anything of it.
+    fn skip(&mut self) -> Option<()> {
+        self.checked(|_| Some(()))
+    }
+
+    fn checked<T>(&mut self, of: impl FnOnce(&str) -> Option<T>) -> Option<T> {
         let mut text = String::new();
         self.0.read_line(&mut text).ok()?;
         let (sum, line) = text.strip_suffix('\n')?.split_once(' ')?;
-        let good = sum == checksum(line);
-        good.then(|| serde_json::from_str(line).ok()).flatten()
+        if sum == checksum(line) { of(line) } else { None }
     }
 }
 

@@ -92,7 +92,7 @@ impl Plan {
         check_lists(campaign)?;
         let (mut cases, mut jobs, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
         for world in &campaign.worlds {
-            if world.optional && !world.file.exists() {
+            if world.is_left_out() {
                 left_out.push(world.file.clone());
                 continue;
             }
@@ -137,8 +137,15 @@ fn check_lists(campaign: &Campaign) -> Result<()> {
         bail!("seeds: there are not that many after {}", seeds.first);
     }
     names("name", [&campaign.name])?;
+    if campaign.name.contains(['/', '\\']) || [".", ".."].contains(&campaign.name.as_str()) {
+        bail!(
+            "name: {:?} cannot be the name of a folder; leave out slashes and dots",
+            campaign.name
+        );
+    }
     names("worlds", worlds.iter().map(|world| &world.name))?;
     names("settings", settings.iter().map(|setting| &setting.name))?;
+    settings.iter().try_for_each(check_setting)?;
     let with_own = |setting: &&Setting| setting.strategies.is_some();
     let own = settings.iter().filter(with_own).filter_map(|s| s.strategies.as_ref());
     let common = settings.iter().any(|setting| setting.strategies.is_none());
@@ -148,6 +155,7 @@ fn check_lists(campaign: &Campaign) -> Result<()> {
         }
         unique("strategies", strategies.iter().map(ToString::to_string))?;
     }
+    check_count(campaign)?;
     unique("metrics", campaign.metrics.iter().cloned())?;
     let known = super::execute::numbers();
     for metric in &campaign.metrics {
@@ -156,6 +164,49 @@ fn check_lists(campaign: &Campaign) -> Result<()> {
         }
     }
     Ok(())
+}
+
+/// What a setting says must have a meaning.
+fn check_setting(setting: &Setting) -> Result<()> {
+    let Setting { name, max_scans, overrides, .. } = setting;
+    if *max_scans == Some(0) {
+        bail!("settings: {name}: max_scans: a run has at least 1 scan");
+    }
+    let strategy = |path: &&String| {
+        path.strip_prefix("planner.strategy")
+            .is_some_and(|rest| matches!(rest.get(..1), None | Some(".")))
+    };
+    if let Some(path) = overrides.keys().find(strategy) {
+        bail!(
+            "settings: {name}: overrides: {path:?} has no effect; name strategies in `strategies`"
+        );
+    }
+    Ok(())
+}
+
+/// Counts the runs before any of them is thought of.
+fn check_count(campaign: &Campaign) -> Result<()> {
+    let there = campaign.worlds.iter().filter(|world| !world.is_left_out());
+    let of_world = |world: &NamedWorld| {
+        let starts = world.starts.as_ref().unwrap_or(&campaign.starts).count();
+        let of_setting = |setting: &Setting| {
+            let strategies = setting.strategies.as_ref().unwrap_or(&campaign.strategies).len();
+            strategies.checked_mul(starts)?.checked_mul(campaign.seeds.count)
+        };
+        sum(campaign.settings.iter().map(of_setting))
+    };
+    match sum(there.map(of_world)) {
+        Some(runs) if runs <= MOST_RUNS => Ok(()),
+        runs => {
+            let runs = runs.map_or("beyond counting".to_owned(), |runs| runs.to_string());
+            bail!("the campaign has more than {MOST_RUNS} runs ({runs}); divide it into several")
+        }
+    }
+}
+
+/// A sum, unless it is too large for a number.
+fn sum(mut counts: impl Iterator<Item = Option<usize>>) -> Option<usize> {
+    counts.try_fold(0usize, |sum, count| sum.checked_add(count?))
 }
 
 /// Names must be there, fit into a table, and differ.
@@ -292,10 +343,6 @@ fn add_jobs(
 ) -> Result<()> {
     let (case, seeds) = (cases.len() - 1, campaign.seeds);
     let starts = &cases[case].starts;
-    let more = strategies.len().saturating_mul(starts.len()).saturating_mul(seeds.count);
-    if jobs.len().saturating_add(more) > MOST_RUNS {
-        bail!("the campaign has more than {MOST_RUNS} runs; divide it into several");
-    }
     for &strategy in strategies {
         for (start, pose) in starts.iter().enumerate() {
             let digest = cases[case].digest(strategy, pose)?;

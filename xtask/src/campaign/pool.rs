@@ -2,9 +2,9 @@
 
 use super::execute::execute;
 use super::file::Campaign;
-use super::folder::{self, Folder, Recorded};
+use super::folder::{self, Folder, Planned, Recorded};
 use super::plan::{Job, Plan, Shard};
-use super::record::{RunKey, RunRecord};
+use super::record::RunRecord;
 use super::tables;
 use crate::interrupt::Interrupt;
 use anyhow::{Result, anyhow};
@@ -60,28 +60,30 @@ pub(crate) fn run(
             options.out.display()
         )));
     }
-    let mine: Vec<&Job> = (0..plan.jobs.len())
-        .filter(|index| options.shard.has(*index))
-        .map(|index| &plan.jobs[index])
-        .collect();
-    let missing = missing(&mine, &plan, options.out, tell);
-    tell(&Step::Begin { recorded: mine.len() - missing.len(), of: mine.len() });
-    work(&plan, &missing, &folder, options, tell)?;
-    let (records, _) = folder::read_all(options.out, &plan.manifest);
-    tables::write(options.out, &plan.manifest.metrics, &records)?;
-    let keys: std::collections::BTreeSet<&RunKey> =
-        mine.iter().map(|job| &job.planned.key).collect();
-    Ok(records.into_iter().filter(|record| keys.contains(&record.key)).collect())
+    let runs: Vec<&Planned> = plan.jobs.iter().map(|job| &job.planned).collect();
+    let mut recorded = folder::read_all(options.out, &runs, plan.keep_paths);
+    let missing = missing(&recorded, options.shard, tell);
+    let of = (0..runs.len()).filter(|index| options.shard.has(*index)).count();
+    tell(&Step::Begin { recorded: of - missing.len(), of });
+    if !missing.is_empty() {
+        tables::remove(options.out)?;
+    }
+    let jobs: Vec<&Job> = missing.iter().map(|index| &plan.jobs[*index]).collect();
+    work(&plan, &jobs, &folder, options, tell)?;
+    let done: Vec<&Planned> = missing.iter().map(|index| runs[*index]).collect();
+    let done = folder::read_all(options.out, &done, false);
+    for (index, done) in missing.into_iter().zip(done) {
+        recorded[index] = done;
+    }
+    let records: Vec<Option<RunRecord>> = recorded.into_iter().map(Recorded::whole).collect();
+    tables::write(options.out, &plan.manifest.metrics, records.iter().flatten())?;
+    let mine = records.into_iter().enumerate().filter(|(index, _)| options.shard.has(*index));
+    Ok(mine.filter_map(|(_, record)| record).collect())
 }
 
-/// The runs that are not recorded, or whose files are damaged.
-fn missing<'a>(
-    jobs: &[&'a Job],
-    plan: &Plan,
-    out: &Path,
-    tell: &(dyn Fn(&Step) + Sync),
-) -> Vec<&'a Job> {
-    let is_missing = |job: &&&Job| match folder::read(out, &job.planned, plan.keep_paths) {
+/// The runs of a shard that are not recorded, or whose files are damaged.
+fn missing(recorded: &[Recorded], shard: Shard, tell: &(dyn Fn(&Step) + Sync)) -> Vec<usize> {
+    let is_missing = |index: &usize| match &recorded[*index] {
         Recorded::Whole(_) => false,
         Recorded::Missing => true,
         Recorded::Damaged(file) => {
@@ -90,7 +92,7 @@ fn missing<'a>(
             true
         }
     };
-    jobs.iter().filter(is_missing).copied().collect()
+    (0..recorded.len()).filter(|index| shard.has(*index)).filter(is_missing).collect()
 }
 
 /// Each worker takes the next run and does all of it by itself.

@@ -14,6 +14,15 @@ const SPACING: f64 = 0.1;
 const ROOM: f64 = 0.15;
 
 impl Starts {
+    /// How many there are; of more than can be drawn, [`Starts::poses`] says so.
+    pub(crate) fn count(&self) -> usize {
+        match self {
+            Self::Given => 1,
+            Self::Poses(poses) => poses.len(),
+            Self::Drawn { count, .. } => (*count).min(MOST),
+        }
+    }
+
     /// The poses, `world_from_robot`.
     ///
     /// Drawn are those that can be reached from the start that the world gives, or from its

@@ -2,6 +2,7 @@
 
 use super::record::{RunRecord, Value};
 use crate::csv_file;
+use crate::input::about;
 use anyhow::Result;
 use covmap_explore::Spread;
 use std::collections::BTreeMap;
@@ -12,7 +13,12 @@ use std::path::Path;
 /// Writes `runs.csv`, `timings.csv` and `summary.csv`.
 ///
 /// The first and the last are a function of the campaign and the program; the times are not.
-pub(crate) fn write(dir: &Path, metrics: &[String], records: &[RunRecord]) -> Result<()> {
+pub(crate) fn write<'a>(
+    dir: &Path,
+    metrics: &[String],
+    records: impl IntoIterator<Item = &'a RunRecord>,
+) -> Result<()> {
+    let records: &[&RunRecord] = &records.into_iter().collect::<Vec<_>>();
     csv_file::write(&dir.join("runs.csv"), |out| {
         let columns = records.first().map(|r| r.values.keys().cloned().collect::<Vec<_>>());
         let columns = columns.unwrap_or_default();
@@ -43,6 +49,20 @@ pub(crate) fn write(dir: &Path, metrics: &[String], records: &[RunRecord]) -> Re
     csv_file::write(&dir.join("summary.csv"), |out| out.write_all(summary.as_bytes()))
 }
 
+/// Removes the tables, so that none is there that does not tell of what is.
+pub(crate) fn remove(dir: &Path) -> Result<()> {
+    for name in ["runs.csv", "timings.csv", "summary.csv"] {
+        let file = dir.join(name);
+        match std::fs::remove_file(&file) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(about(&file)(format!("cannot be removed: {error}")));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
 const KEY: &str = "world,setting,strategy,start,seed";
 
 fn key(record: &RunRecord) -> String {
@@ -62,7 +82,7 @@ fn text(text: &str) -> String {
 
 /// Mean, standard deviation and 95 % interval of each metric over starts and seeds, in the
 /// order of the campaign.
-fn summary(metrics: &[String], records: &[RunRecord]) -> String {
+fn summary(metrics: &[String], records: &[&RunRecord]) -> String {
     let mut order: Vec<[&str; 3]> = Vec::new();
     let mut groups: BTreeMap<[&str; 3], Vec<&RunRecord>> = BTreeMap::new();
     for record in records {

@@ -166,6 +166,26 @@ fn what_is_done_is_not_done_again_but_what_is_damaged_is() {
 }
 
 #[test]
+fn tables_do_not_outlive_the_runs_that_they_tell_of() {
+    let shell = tiny();
+    shell.expect("campaign tiny.ron --jobs 2", 0);
+    let expected = bytes(&shell, "out/tiny");
+    let tables = || {
+        let names = ["runs.csv", "summary.csv", "timings.csv"];
+        names.map(|name| shell.path("out/tiny").join(name).exists())
+    };
+    // A folder stands where the result of a missing run is to be.
+    let file = run_files(&shell, "out/tiny")[4].clone();
+    fs::remove_file(&file).unwrap();
+    fs::create_dir_all(file.join("in the way")).unwrap();
+    shell.expect("campaign tiny.ron", 2);
+    assert_eq!(tables(), [false; 3]);
+    fs::remove_dir_all(&file).unwrap();
+    shell.expect("campaign tiny.ron", 0);
+    assert_eq!(bytes(&shell, "out/tiny"), expected);
+}
+
+#[test]
 fn results_of_another_version_are_not_mixed_in() {
     let shell = tiny();
     shell.expect("campaign tiny.ron --shard 1/2 --out a", 0);
@@ -175,6 +195,8 @@ fn results_of_another_version_are_not_mixed_in() {
     assert!(version.starts_with(concat!(env!("CARGO_PKG_VERSION"), "+")), "{version}");
     shell.write("b/campaign.json", list.replace(&version, "0.0.9+other"));
     shell.refuse("collect a b --out c", &["b: was made by covmap 0.0.9+other", &version]);
+    // Nor in the folder where the results go.
+    shell.refuse("collect a --out b", &["b: was made by covmap 0.0.9+other", &version]);
     let stray = run_files(&shell, "a")[0].clone();
     fs::rename(&stray, stray.with_file_name("0123.run")).unwrap();
     let typed = shell.expect("campaign tiny.ron --shard 1/2 --out a", 0);
@@ -203,6 +225,20 @@ fn bad_campaigns_are_refused_before_any_run() {
     refuse("max_scans: 12", "overrides: {\"planner.sped\": 1}", &["b21r", "\"planner.sped\""]);
     refuse("max_scans: 12", "overrides: {\"model.bins\": 1}", &["b21r.ron", "bins"]);
     refuse("turn: 7.0", "turn: inf", &["worlds: room: turn"]);
+    for path in ["planner.strategy", "planner.strategy.IgCl.alpha"] {
+        let overrides = format!("overrides: {{\"{path}\": \"Ig\"}}");
+        refuse("max_scans: 12", &overrides, &["settings: b21r: overrides", path, "`strategies`"]);
+    }
+    refuse("max_scans: 12", "overrides: {\"model/bins\": 9}", &["\"model/bins\" is no parameter"]);
+    refuse("max_scans: 12", "max_scans: 0", &["settings: b21r: max_scans", "at least 1"]);
+    for name in ["", ".", "..", "a/b", "../tiny", "a\\\\b"] {
+        refuse("name: \"tiny\"", &format!("name: \"{name}\""), &["name: \""]);
+    }
+    refuse(
+        "count: 2, seed: 1),\n    seeds: (first: 5, count: 2)",
+        "count: 1000, seed: 1),\n    seeds: (first: 5, count: 100000)",
+        &["more than 100000 runs (300000000)"],
+    );
     refuse("metrics:", "meters:", &["tiny.ron:8:", "meters"]);
     let twice =
         "[(name: \"a\", file: \"room.ron\"), (name: \"b\", file: \"room.ron\")],\n    settings";
