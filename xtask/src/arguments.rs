@@ -5,7 +5,7 @@ mod experiments;
 mod values;
 
 pub(crate) use bench::{Bench, Rows};
-pub(crate) use experiments::{Experiments, Figure, Table};
+pub(crate) use experiments::{Experiments, Figure, Paper, Table};
 
 use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -248,7 +248,7 @@ pub(crate) enum Command {
     Table(Table),
     /// Runs all of the paper's experiments, draws all figures, and judges all claims.
     #[command(after_help = experiments::PAPER_EXAMPLES)]
-    Paper(Experiments),
+    Paper(Paper),
     /// Runs worlds × settings × strategies × starts × seeds, and goes on where it was stopped.
     #[command(after_help = CAMPAIGN_EXAMPLES)]
     Campaign(Campaign),

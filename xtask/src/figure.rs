@@ -6,10 +6,11 @@ use crate::interrupt::{self, Interrupt};
 use crate::paper::{Session, drawing};
 use crate::say;
 use anyhow::Result;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Figure) -> Result<ExitCode> {
-    draw(&arguments.common, |session, output| match arguments.number.as_str() {
+    draw(&arguments.common, &[], |session, output| match arguments.number.as_str() {
         "1" | "2" => drawing::cells(session, output).map(drop),
         "3" => drawing::models(output).map(drop),
         "5" => drawing::corridor(session, output).map(drop),
@@ -19,16 +20,17 @@ pub(crate) fn run(arguments: &Figure) -> Result<ExitCode> {
 }
 
 pub(crate) fn table(arguments: &Table) -> Result<ExitCode> {
-    draw(&arguments.common, |session, output| drawing::corridor(session, output).map(drop))
+    draw(&arguments.common, &[], |session, output| drawing::corridor(session, output).map(drop))
 }
 
 /// Does something in a session, and says where the results are; 130 after Ctrl-C.
 pub(crate) fn draw(
     arguments: &Experiments,
+    worlds: &[(String, PathBuf)],
     what: impl FnOnce(&Session<'_>, &Output) -> Result<()> + Send,
 ) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
-    let session = Session::new(arguments, &interrupt);
+    let session = Session::new(arguments, worlds, &interrupt);
     let output = Output::create(session.out())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(session.jobs().get()).build()?;
     let done = pool.install(|| what(&session, &output));

@@ -17,19 +17,21 @@ pub(crate) mod trial;
 
 pub(crate) use session::Session;
 
-use crate::arguments::Experiments;
+use crate::arguments::Paper;
+use crate::campaign;
 use crate::figure::draw;
 use crate::figures::Output;
+use crate::fit_file::FitFile;
 use crate::say;
 use anyhow::Result;
 use claims::Evidence;
 use covmap_explore::Config;
-use experiments::{B21R, PAPER, ablation};
+use experiments::{B21R, PAPER, ablation, campaigns};
 use fitting::Fitting;
 use limits::Limits;
 use oblique::Oblique;
 use report::Report;
-use std::path::Path;
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 use trial::judge;
@@ -37,9 +39,11 @@ use trial::judge;
 /// Seeds of each oblique wall.
 const SEEDS: u64 = 4;
 
-pub(crate) fn run(arguments: &Experiments) -> Result<ExitCode> {
-    draw(arguments, |session, output| {
+pub(crate) fn run(arguments: &Paper) -> Result<ExitCode> {
+    draw(&arguments.common, &arguments.worlds, |session, output| {
         let begun = Instant::now();
+        check(session)?;
+        report::clear(output)?;
         let [paper, b21r] = evidence(session, output)?;
         let ablation = ablation(session)?;
         let columns = [judge(claims::all(&paper)), judge(claims::all(&b21r))];
@@ -54,6 +58,20 @@ pub(crate) fn run(arguments: &Experiments) -> Result<ExitCode> {
     })
 }
 
+/// The file that says what is fitted to what for a configuration.
+fn fit_file(name: &str) -> PathBuf {
+    format!("configs/fit/{name}.ron").into()
+}
+
+/// Finds what is wrong with any experiment before the first one is run.
+fn check(session: &Session<'_>) -> Result<()> {
+    for campaign in campaigns(session)? {
+        session.check()?;
+        campaign::check(&campaign, &session.folder(&campaign))?;
+    }
+    [PAPER, B21R].into_iter().try_for_each(|name| FitFile::read(&fit_file(name)).map(|_| ()))
+}
+
 /// Runs every experiment with both configurations, and draws every figure.
 fn evidence(session: &Session<'_>, output: &Output) -> Result<[Evidence; 2]> {
     let cells = drawing::cells(session, output)?;
@@ -61,7 +79,7 @@ fn evidence(session: &Session<'_>, output: &Output) -> Result<[Evidence; 2]> {
     let corridor = drawing::corridor(session, output)?;
     let counting = drawing::counting(session, output)?;
     let strategies = drawing::strategies(session, output)?;
-    let places = drawing::places(session, output)?;
+    let (places, maps) = drawing::places(session, output)?;
     let mut evidence = Vec::new();
     let mut parts = cells.into_iter().zip(models).zip(corridor).zip(counting);
     let mut rest = strategies.into_iter().zip(places);
@@ -70,17 +88,17 @@ fn evidence(session: &Session<'_>, output: &Output) -> Result<[Evidence; 2]> {
         let Some((((cells, model), corridor), counting)) = parts.next() else { break };
         let Some(([at_view_points, while_driving], places)) = rest.next() else { break };
         let (config, _): (Config, _) = drawing::config(name)?;
-        let fit = format!("configs/fit/{name}.ron");
         evidence.push(Evidence {
             cells,
             model,
-            fitting: Fitting::measure(Path::new(&fit), session)?,
+            fitting: Fitting::measure(&fit_file(name), session)?,
             oblique: Oblique::measure(&config, if session.quick { 1 } else { SEEDS })?,
             corridor,
             counting,
             at_view_points,
             while_driving,
             places,
+            maps: maps.clone(),
             limits: Limits::measure(&config, session)?,
             speed: config.robot.speed,
         });

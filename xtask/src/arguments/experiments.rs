@@ -1,5 +1,6 @@
 //! What can be typed for the paper's experiments.
 
+use super::values::named_file;
 use clap::Args;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -21,11 +22,13 @@ The folder that is written:
   campaigns/                the runs; begun again, only what is missing is run
 
 A claim is `reproduced`, `not reproduced` or `undecided`. configs/paper.ron decides; configs/b21r.ron
-is a second column.
+is a second column. The unit is a paired (start, seed); starts are what is resampled, and what rests
+on fewer than three of them decides nothing. All campaigns are checked before the first run.
 
 Examples:
   cargo xtask paper --out out/paper
   cargo xtask paper --quick --out out/quick
+  cargo xtask paper --world building=maps/ours.yaml
 
 Exit codes: 0 done, whatever the verdicts; 2 bad input, or a result that cannot be written; 130
 interrupted with Ctrl-C.
@@ -47,6 +50,16 @@ pub(crate) struct Table {
     pub(crate) number: String,
     #[command(flatten)]
     pub(crate) common: Experiments,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Paper {
+    #[command(flatten)]
+    pub(crate) common: Experiments,
+    /// Takes the world called NAME of configs/worlds.ron from this file: a scenario, or a map of
+    /// map_server, as of a real building
+    #[arg(long = "world", value_name = "NAME=FILE", value_parser = named_file)]
+    pub(crate) worlds: Vec<(String, PathBuf)>,
 }
 
 /// How the paper's experiments are run.

@@ -1,12 +1,12 @@
 //! One run.
 
-use super::paths::{Paths, millimetres, rounded};
+use super::paths::{Paths, driven, millimetres, rounded};
 use super::plan::{Job, Plan};
 use super::record::{RunRecord, Value, values};
 use anyhow::Result;
 use covmap_explore::{
     Accuracy, Config, Ending, Event, Limits, Mission, SimulatedRobot, Summary, Tally, TraceHasher,
-    TraceHeader, Truth, corners, explore,
+    TraceHeader, Truth, explore,
 };
 use covmap_plan::Strategy;
 use covmap_world::{Extent, Scenario, Surface, World};
@@ -104,7 +104,7 @@ fn measure(
     let times = times.map(|(name, time)| (name.to_owned(), time)).into_iter().collect();
     let place = |scan: &covmap_sonar::Scan| millimetres(scan.pose.translation.vector.into());
     let paths = keep_paths.then(|| Paths {
-        driven: corners(&run.trajectory).into_iter().map(millimetres).collect(),
+        driven: driven(&run.trajectory),
         scans: run.scans.iter().map(place).collect(),
         explored,
     });

@@ -108,6 +108,12 @@ pub(crate) struct Seeds {
 }
 
 impl NamedWorld {
+    /// Whether it is a map of map_server, such as of a real building, and no scenario.
+    pub(crate) fn is_map(&self) -> bool {
+        let extension = self.file.extension().unwrap_or_default();
+        ["yaml", "yml"].iter().any(|yaml| extension.eq_ignore_ascii_case(yaml))
+    }
+
     /// Whether the campaign goes on without it.
     pub(crate) fn is_left_out(&self) -> bool {
         self.optional && !self.file.exists()

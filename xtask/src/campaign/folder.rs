@@ -113,18 +113,7 @@ impl Folder {
     /// # Errors
     /// If something else is there, or another process writes it. Then nothing has changed.
     pub(crate) fn open(dir: &Path, manifest: &Manifest) -> Result<Self> {
-        match Manifest::read(dir)? {
-            Some(present) if !present.is_campaign(manifest) => bail!(
-                "{}: holds the results of another campaign ({}), or of this one before it was \
-                 changed; name another folder with --out",
-                dir.display(),
-                present.name
-            ),
-            None if is_foreign(dir)? => {
-                bail!("{}: is no folder of a campaign; name another with --out", dir.display())
-            }
-            _ => {}
-        }
+        Self::check(dir, manifest)?;
         let runs = dir.join(RUNS);
         fs::create_dir_all(&runs).map_err(|error| cannot(&runs, "made", &error))?;
         let lock = lock(dir)?;
@@ -143,6 +132,25 @@ impl Folder {
             fs::rename(&partial, &list).map_err(|error| cannot(&list, "written", &error))?;
         }
         Ok(folder)
+    }
+
+    /// Whether a folder may be made, or gone on in, for a campaign. Nothing is changed.
+    ///
+    /// # Errors
+    /// If something else is there.
+    pub(crate) fn check(dir: &Path, manifest: &Manifest) -> Result<()> {
+        match Manifest::read(dir)? {
+            Some(present) if !present.is_campaign(manifest) => bail!(
+                "{}: holds the results of another campaign ({}), or of this one before it was \
+                 changed; name another folder with --out",
+                dir.display(),
+                present.name
+            ),
+            None if is_foreign(dir)? => {
+                bail!("{}: is no folder of a campaign; name another with --out", dir.display())
+            }
+            _ => Ok(()),
+        }
     }
 
     /// How many files of other versions of the program are there.
@@ -235,15 +243,18 @@ pub(crate) fn read_all(dir: &Path, runs: &[&Planned], with_paths: bool) -> Vec<R
 /// # Errors
 /// If there is no such run, if it has no paths, or if its file is damaged.
 pub(crate) fn load_paths(dir: &Path, key: &RunKey) -> Result<Paths> {
-    let none = || anyhow!("{}: has no paths of {key}", dir.display());
+    let none = || {
+        anyhow!("{}: has no paths of {key}; the campaign needs `keep_paths: true`", dir.display())
+    };
     let manifest = Manifest::read(dir)?.ok_or_else(none)?;
     let planned = manifest.runs.iter().find(|run| run.key == *key).ok_or_else(none)?;
     let paths = Lines::open(&file(dir, &planned.id)).and_then(|mut lines| {
         lines.next::<Outcome>()?;
         lines.next::<IndexMap<String, f64>>()?;
-        lines.next::<Option<Paths>>()?
+        lines.next::<Option<Paths>>()
     });
-    paths.ok_or_else(none)
+    let damaged = || anyhow!("{}: the file of {key} is damaged", dir.display());
+    paths.ok_or_else(damaged)?.ok_or_else(none)
 }
 
 /// The lines of a file, each checked.

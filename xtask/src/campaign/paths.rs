@@ -1,5 +1,6 @@
 //! Where a run led, and what was explored along the way.
 
+use covmap_explore::corners;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +15,11 @@ pub(crate) struct Paths {
     /// Length of the path so far, and the share of the observable cells that are known with
     /// an entropy of at most ε; some hundred points.
     pub(crate) explored: Vec<(f64, f64)>,
+}
+
+/// The corners of a driven path.
+pub(crate) fn driven(trajectory: &[Point2<f64>]) -> Vec<(f64, f64)> {
+    corners(trajectory).into_iter().map(millimetres).collect()
 }
 
 /// A point, to the millimetre.

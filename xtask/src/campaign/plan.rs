@@ -262,8 +262,7 @@ impl Source {
             bail!("worlds: {}: only scenarios can be turned and shifted", world.name);
         }
         // What is no map of map_server is refused when the world is made of it.
-        let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-        let digest = if ["yaml", "yml"].contains(&extension.as_str()) {
+        let digest = if world.is_map() {
             map_digest(&load_map_server(file)?.solid())
         } else {
             Digest::default()

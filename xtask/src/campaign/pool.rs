@@ -38,6 +38,11 @@ pub(crate) enum Step {
     Done,
 }
 
+/// Finds what is wrong with a campaign, or with its folder, before anything is run or written.
+pub(crate) fn check(campaign: &Campaign, out: &Path) -> Result<()> {
+    Folder::check(out, &Plan::new(campaign)?.manifest)
+}
+
 /// Runs what is not recorded yet, writes the tables, and returns all recorded runs of the
 /// shard, in the order of the campaign. After Ctrl-C these are not all.
 ///

@@ -2,62 +2,82 @@
 
 use super::map_figure;
 use super::output::Output;
-use crate::campaign::Setting;
-use crate::input;
+use crate::campaign::{Job, Plan, RunKey, Setting, driven, load_paths};
+use crate::paper::Session;
 use crate::paper::claims::{EXTENDED, ONCE};
 use crate::paper::runs::Runs;
 use crate::paper::session::Series;
 use crate::pictures::Pictures;
-use anyhow::Result;
-use covmap_explore::{Limits, Mission, SimulatedRobot, Summary, Truth, explore};
+use anyhow::{Result, bail};
+use covmap_explore::{Mission, Run, SimulatedRobot, Summary, Truth, explore};
+use covmap_io::Picture;
 use covmap_plan::Strategy;
+use covmap_world::World;
+use nalgebra::Point2;
 use rayon::prelude::*;
-use std::ops::ControlFlow;
+use std::path::Path;
 
 /// The maps of Fig. 5: counting once, CL on coverage maps, extended counting; whether the
 /// occupancy is shown, as in the paper.
 const MAPS: [(char, Strategy, bool); 3] =
     [('a', ONCE, true), ('b', Strategy::Cl, false), ('c', EXTENDED, true)];
 
-/// Repeats one run of each technique, and draws its map.
+/// Repeats the first recorded run of each technique, since maps are not recorded, and draws its
+/// map with the recorded path.
 pub(crate) fn write(
     output: &Output,
+    session: &Session<'_>,
     series: &Series,
     setting: &Setting,
     suffix: &str,
 ) -> Result<()> {
+    let plan = Plan::new(&series.campaign)?;
     let draw = |(letter, strategy, occupancy): (char, Strategy, bool)| {
-        let name = format!("figure5{letter}{suffix}");
-        draw(output, series, setting, (&name, strategy, occupancy))
+        let name = strategy.to_string();
+        let is_first =
+            |key: &RunKey| key.setting == setting.name && key.strategy == name && key.start == 0;
+        let Some(job) = plan.jobs.iter().find(|job| is_first(&job.planned.key)) else {
+            return Ok(());
+        };
+        let (run, mission) = repeat(&plan, job, session, &series.dir)?;
+        let pictured = Pictured { world: &plan.cases[job.case].world, mission, run };
+        let picture = pictured.picture(strategy, job.planned.key.seed, occupancy)?;
+        map_figure::write_picture(output, &format!("figure5{letter}{suffix}"), &picture)
     };
     MAPS.into_par_iter().map(draw).collect()
 }
 
-fn draw(
-    output: &Output,
-    series: &Series,
-    setting: &Setting,
-    (name, strategy, occupancy): (&str, Strategy, bool),
-) -> Result<()> {
-    let Some(named) = series.campaign.worlds.first() else { return Ok(()) };
-    let (config, _) = input::config(Some(&setting.config))?;
-    let set = |config: covmap_explore::Config, (path, value): (&String, &_)| {
-        config.overridden(path, value)
-    };
-    let mut config = setting.overrides.iter().try_fold(config, set)?;
-    config.planner.strategy = strategy;
-    config.resolution = named.resolution.unwrap_or(config.resolution);
-    let world = map_figure::world(named)?;
-    let Setting { while_driving, max_scans, .. } = *setting;
-    let mission = Mission::new(&world, &config, None, Limits { while_driving, max_scans })?;
-    let mut robot = SimulatedRobot::new(&world, &config, 1)?;
-    let run = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(()))?;
-    let truth = Truth::new(&world, &mission);
-    let score = truth.score(&run.map, &truth.scored_cells(&world, &mission, &run));
-    let summary = Summary::new(world.name(), &strategy, 1, &run, &score, 0.0, String::new());
-    let pictures = Pictures { mission: &mission, run: &run, truth: &truth, summary: &summary };
-    let picture = if occupancy { pictures.occupancy()? } else { pictures.coverage() };
-    map_figure::write_picture(output, name, &picture)
+/// Does a run again, with the path that was recorded of it.
+fn repeat(plan: &Plan, job: &Job, session: &Session<'_>, dir: &Path) -> Result<(Run, Mission)> {
+    let key = &job.planned.key;
+    let recorded = load_paths(dir, key)?;
+    let (world, mission) = (&plan.cases[job.case].world, plan.mission(job)?);
+    let mut robot = SimulatedRobot::new(world, &mission.config, key.seed)?;
+    let mut run = explore(&mission, &mut robot, &mut |_, _| session.interrupt.flow())?;
+    session.check()?;
+    if driven(&run.trajectory) != recorded.driven {
+        bail!("{}: {key}: is another run now; remove the folder to run it again", dir.display());
+    }
+    run.trajectory = recorded.driven.iter().map(|(x, y)| Point2::new(*x, *y)).collect();
+    Ok((run, mission))
+}
+
+/// A run with where it was.
+struct Pictured<'a> {
+    world: &'a World,
+    mission: Mission,
+    run: Run,
+}
+
+impl Pictured<'_> {
+    fn picture(&self, strategy: Strategy, seed: u64, occupancy: bool) -> Result<Picture> {
+        let Self { world, mission, run } = self;
+        let truth = Truth::new(world, mission);
+        let score = truth.score(&run.map, &truth.scored_cells(world, mission, run));
+        let summary = Summary::new(world.name(), &strategy, seed, run, &score, 0.0, String::new());
+        let pictures = Pictures { mission, run, truth: &truth, summary: &summary };
+        if occupancy { pictures.occupancy() } else { Ok(pictures.coverage()) }
+    }
 }
 
 /// The rows of Table 1: technique, path, share of uncertain cells, each with its interval.

@@ -92,7 +92,10 @@ fn point(runs: &Runs, strategy: Strategy, metric: &str, x: f64) -> ChartPoint {
     ChartPoint { x, y: mean.value, low: low.max(mean.value / 10.0), high }
 }
 
-/// Draws (c) and (d), the first run of IG and of CL of a setting, if paths were kept.
+/// Draws (c) and (d), the first run of IG and of CL of a setting.
+///
+/// # Errors
+/// If its paths were not kept, or cannot be read.
 pub(crate) fn write_trajectories(
     output: &Output,
     series: &Campaigned,
@@ -106,7 +109,7 @@ pub(crate) fn write_trajectories(
         let found = keys
             .find(|key| key.strategy == name && key.setting == setting && key.world == world.name);
         let Some(key) = found else { continue };
-        let Ok(paths) = load_paths(&series.dir, key) else { continue };
+        let paths = load_paths(&series.dir, key)?;
         let title = format!("Fig. 7 ({letter}): path of {name}");
         let trajectory = Trajectory { title, subtitle: key.to_string(), paths };
         map_figure::write_trajectory(

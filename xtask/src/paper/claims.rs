@@ -42,6 +42,8 @@ pub(crate) struct Evidence {
     pub(crate) while_driving: Runs,
     /// Strategies in other worlds.
     pub(crate) places: Runs,
+    /// Those of these worlds that are maps of map_server.
+    pub(crate) maps: Vec<String>,
     /// The ends of IG_CL.
     pub(crate) limits: Limits,
     /// How fast the robot drives \[m/s\].
@@ -67,7 +69,7 @@ pub(crate) fn all(e: &Evidence) -> Vec<Finding> {
         strategies::claim_14(&e.at_view_points, &e.while_driving),
         trade_off::claim_15(&e.at_view_points, &e.while_driving),
         trade_off::claim_16(&e.limits, &e.at_view_points),
-        places::claim_17(&e.at_view_points, &e.places),
+        places::claim_17(&e.at_view_points, &e.places).note(places::buildings(&e.maps)),
         strategies::claim_19(&e.while_driving, e.speed),
         counting::claim_20(&e.corridor),
         model::claim_21(&e.oblique),

@@ -1,6 +1,6 @@
 //! From experiments to figures: what `figure N` does, and `paper` for all.
 
-use super::experiments::{B21R, PAPER, campaign, n_star};
+use super::experiments::{B21R, PAPER, campaign, n_star, worlds};
 use super::runs::Runs;
 use super::session::{Series, Session};
 use crate::figures::partial_cells::{self, PartialCell};
@@ -54,7 +54,7 @@ pub(crate) fn corridor(session: &Session<'_>, output: &Output) -> Result<[Runs; 
     let mut rows = Vec::new();
     for (name, runs) in [PAPER, B21R].into_iter().zip(&both) {
         if let Some(setting) = table_1.setting(name, true) {
-            fig5::write(output, &table_1, setting, &suffix(name))?;
+            fig5::write(output, session, &table_1, setting, &suffix(name))?;
         }
         let quoted = |cells: [String; 4]| {
             let cells = cells.into_iter().map(|cell| format!("\"{cell}\""));
@@ -96,9 +96,11 @@ pub(crate) fn strategies(session: &Session<'_>, output: &Output) -> Result<[[Run
     Ok([one(PAPER)?, one(B21R)?])
 }
 
-/// Claim 17: some strategies in other worlds.
-pub(crate) fn places(session: &Session<'_>, output: &Output) -> Result<[Runs; 2]> {
-    let series: Series = session.run(campaign("worlds", session.quick)?)?;
+/// Claim 17: some strategies in other worlds; and which of these are maps of map_server.
+pub(crate) fn places(session: &Session<'_>, output: &Output) -> Result<([Runs; 2], Vec<String>)> {
+    let series: Series = session.run(worlds(session)?)?;
+    let there = series.campaign.worlds.iter().filter(|world| !world.is_left_out());
+    let maps = there.filter(|world| world.is_map()).map(|world| world.name.clone()).collect();
     let both = [series.runs(PAPER, false), series.runs(B21R, false)];
     for (name, runs) in [PAPER, B21R].into_iter().zip(&both) {
         let worlds: Vec<(String, Runs)> =
@@ -108,7 +110,7 @@ pub(crate) fn places(session: &Session<'_>, output: &Output) -> Result<[Runs; 2]
         let title = format!("The strategies in other worlds, with {name}.ron");
         fig7::write(output, &format!("worlds{}", suffix(name)), &title, &columns)?;
     }
-    Ok(both)
+    Ok((both, maps))
 }
 
 /// What stands behind the name of a figure: nothing for the configuration that decides.

@@ -69,8 +69,27 @@ pub(crate) fn n_star(session: &Session<'_>, table_1: &Series) -> Result<Series> 
     session.run(campaign)
 }
 
+/// The campaign of claim 17, with the worlds that were named.
+pub(crate) fn worlds(session: &Session<'_>) -> Result<Campaign> {
+    let mut campaign = campaign("worlds", session.quick)?;
+    for (name, file) in session.worlds {
+        campaign.replace_world(name, file)?;
+    }
+    Ok(campaign)
+}
+
+/// All campaigns that are known before any of them is run.
+pub(crate) fn campaigns(session: &Session<'_>) -> Result<Vec<Campaign>> {
+    let named = ["table1", "fig6", "fig7"].map(|name| campaign(name, session.quick));
+    named.into_iter().chain([worlds(session), ablated(session)]).collect()
+}
+
 /// What changes when one of our readings does, in a small world.
 pub(crate) fn ablation(session: &Session<'_>) -> Result<Series> {
+    session.run(ablated(session)?)
+}
+
+fn ablated(session: &Session<'_>) -> Result<Campaign> {
     let mut campaign = campaign("ablation", false)?;
     if session.quick {
         campaign.name.push_str("-quick");
@@ -80,5 +99,5 @@ pub(crate) fn ablation(session: &Session<'_>) -> Result<Series> {
         campaign.worlds.iter_mut().for_each(|world| world.resolution = Some(0.2));
         campaign.settings.iter_mut().for_each(|setting| setting.max_scans = Some(QUICK_SCANS));
     }
-    session.run(campaign)
+    Ok(campaign)
 }

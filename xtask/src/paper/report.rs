@@ -78,6 +78,24 @@ const FIGURES: [(&str, &[&str]); 7] = [
     ("Claim 17: other worlds", &["worlds", "worlds-b21r"]),
 ];
 
+/// Removes what an earlier report left in the folder: what is not drawn again must not be shown
+/// as if it were.
+pub(super) fn clear(output: &Output) -> Result<()> {
+    let figures = FIGURES.iter().flat_map(|(_, names)| names.iter());
+    let kinds = |name: &&str| ["svg", "png", "csv"].map(|kind| format!("{name}.{kind}"));
+    let rest = ["table1.csv", "claims.json", "report.html"].map(str::to_owned);
+    for name in figures.flat_map(kinds).chain(rest) {
+        let path = output.path(&name);
+        match std::fs::remove_file(&path) {
+            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                return Err(about(&path)(format!("cannot be removed: {error}")));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
 impl Report {
     /// Writes `claims.json` and `report.html`.
     pub(super) fn write(&self, output: &Output) -> Result<()> {

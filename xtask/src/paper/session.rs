@@ -18,6 +18,8 @@ pub(crate) struct Session<'a> {
     /// Nothing but errors is printed.
     pub(crate) quiet: bool,
     pub(crate) interrupt: &'a Interrupt,
+    /// Worlds of the campaign of other worlds that are taken from files.
+    pub(crate) worlds: &'a [(String, PathBuf)],
     jobs: NonZeroUsize,
     out: PathBuf,
     /// What was run: a row for each setting of each campaign.
@@ -34,12 +36,17 @@ pub(crate) struct Series {
 }
 
 impl<'a> Session<'a> {
-    pub(crate) fn new(arguments: &Experiments, interrupt: &'a Interrupt) -> Self {
+    pub(crate) fn new(
+        arguments: &Experiments,
+        worlds: &'a [(String, PathBuf)],
+        interrupt: &'a Interrupt,
+    ) -> Self {
         let all = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
         Self {
             quick: arguments.quick,
             quiet: arguments.quiet,
             interrupt,
+            worlds,
             jobs: arguments.jobs.unwrap_or(all),
             out: arguments.out.clone(),
             ran: Mutex::default(),
@@ -56,12 +63,17 @@ impl<'a> Session<'a> {
         self.jobs
     }
 
+    /// The folder of a campaign.
+    pub(crate) fn folder(&self, campaign: &Campaign) -> PathBuf {
+        self.out.join("campaigns").join(&campaign.name)
+    }
+
     /// Runs what is missing of a campaign.
     ///
     /// # Errors
     /// If it is wrong or cannot be written, and after Ctrl-C.
     pub(crate) fn run(&self, campaign: Campaign) -> Result<Series> {
-        let dir = self.out.join("campaigns").join(&campaign.name);
+        let dir = self.folder(&campaign);
         if !self.quiet {
             say::line(format!("{}: {}", campaign.name, dir.display()));
         }

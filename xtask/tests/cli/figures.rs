@@ -1,6 +1,6 @@
 //! `figure`, `table` and `paper`.
 
-use crate::typed::Shell;
+use crate::typed::{Shell, shipped};
 
 #[test]
 fn figures_are_drawn_with_the_numbers_behind_them() {
@@ -48,4 +48,91 @@ fn what_is_no_figure_of_ours_and_what_has_no_campaign_is_refused() {
     assert!(error("figure 7 --quiet --out f").contains("configs/fig7.ron"));
     shell.write("file", "");
     shell.refuse("paper --out file/x", &["file/x: cannot be made"]);
+}
+
+/// A folder with quick campaigns of Table 1 and Fig. 7 in a small room, from drawn starts.
+fn small(keep_paths: bool) -> Shell {
+    let shell = Shell::new();
+    std::fs::create_dir(shell.path("configs")).unwrap();
+    shell.write("room.ron", "(name: \"room\", extent: (width: 3.0, height: 2.4), obstacles: [])");
+    for (name, driving, strategies) in [
+        (
+            "table1",
+            "while_driving: 0.25",
+            "Cl, Count(times: 1.0, half_distance: None), Count(times: 50.0, half_distance: 2.0)",
+        ),
+        ("fig7", "", "Cl, Ig"),
+    ] {
+        let campaign = format!(
+            "(
+    name: \"{name}-quick\",
+    worlds: [(name: \"room\", file: \"../room.ron\", resolution: 0.2)],
+    settings: [(name: \"paper\", config: {:?}, {driving})],
+    strategies: [{strategies}],
+    starts: Drawn(count: 2, seed: 1),
+    seeds: (first: 3, count: 1),
+    metrics: [\"scans\"],
+    keep_paths: {keep_paths},
+)",
+            shipped("configs/paper.ron")
+        );
+        shell.write(&format!("configs/{name}-quick.ron"), campaign);
+    }
+    shell
+}
+
+#[test]
+fn fig_5_repeats_the_recorded_runs_and_fig_7_draws_their_paths() {
+    let shell = small(true);
+    shell.expect("figure 5 --quick --quiet --out f", 0);
+    shell.expect("figure 7 --quick --quiet --out f", 0);
+    for figure in ["5a", "5b", "5c", "7c", "7d"] {
+        assert!(shell.path(&format!("f/figure{figure}.svg")).exists(), "{figure}");
+    }
+    // The counts of n* name their campaign.
+    let names: Vec<String> = std::fs::read_dir(shell.path("f/campaigns"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.starts_with("table1-quick-n-star-"))
+        .collect();
+    assert!(
+        matches!(&names[..], [name] if name.rsplit('-').next().unwrap().parse::<u32>().is_ok())
+    );
+}
+
+#[test]
+fn paths_that_were_not_kept_are_missed_aloud() {
+    let shell = small(false);
+    for figure in [5, 7] {
+        let typed = shell.expect(&format!("figure {figure} --quick --quiet --out f"), 2);
+        assert!(
+            typed.err.contains("start 0, seed 3; the campaign needs `keep_paths: true`"),
+            "{typed:?}"
+        );
+    }
+}
+
+#[test]
+fn all_experiments_are_checked_before_the_first_run_and_an_old_report_is_not_touched() {
+    let shell = small(true);
+    std::fs::create_dir(shell.path("p")).unwrap();
+    shell.write("p/figure1.svg", "old");
+    // There is no campaign of Fig. 6.
+    let typed = shell.expect("paper --quick --quiet --out p", 2);
+    assert!(typed.err.contains("configs/fig6-quick.ron: cannot be read"), "{typed:?}");
+    assert!(!shell.path("p/campaigns").exists() && shell.path("p/figure1.svg").exists());
+    for name in ["fig6", "worlds"] {
+        let campaign = std::fs::read_to_string(shell.path("configs/fig7-quick.ron")).unwrap();
+        let campaign = campaign.replace("fig7", name);
+        shell.write(&format!("configs/{name}-quick.ron"), campaign);
+    }
+    let line = "paper --quick --quiet --out p --world museum=museum.yaml";
+    let typed = shell.expect(line, 2);
+    assert!(typed.err.contains("no world called \"museum\""), "{typed:?}");
+    let typed = shell.expect("paper --quick --quiet --out p --world room=museum.yaml", 2);
+    assert!(
+        !typed.err.contains("museum"),
+        "the campaigns before it are looked at first: {typed:?}"
+    );
+    assert!(!shell.path("p/campaigns").exists());
 }

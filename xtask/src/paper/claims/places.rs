@@ -30,6 +30,16 @@ pub(crate) fn claim_17(runs: &Runs, places: &Runs) -> Finding {
     )
 }
 
+/// Whether a real building was among the worlds.
+pub(crate) fn buildings(maps: &[String]) -> String {
+    if maps.is_empty() {
+        "no real building was among the worlds: `--world building=FILE` names a map of one"
+            .to_owned()
+    } else {
+        format!("maps of map_server, as of real buildings, among the worlds: {}", maps.join(", "))
+    }
+}
+
 /// Kendall's τ between the mean ranking in the world of Fig. 7 and that of each unit in another
 /// one.
 fn agreement(reference: &Runs, there: &Runs, metric: &str) -> Option<Estimate> {
@@ -64,6 +74,12 @@ mod tests {
         check(claim_17(&here, &runs("hall", [900.0, 500.0, 700.0, 600.0])), Verdict::Reproduced);
         check(claim_17(&here, &runs("hall", [200.0, 400.0, 220.0, 300.0])), Verdict::NotReproduced);
         check(claim_17(&here, &Runs::default()), Verdict::Undecided);
+    }
+
+    #[test]
+    fn claim_17_says_whether_there_was_a_real_building() {
+        assert!(buildings(&[]).starts_with("no real building"));
+        assert!(buildings(&["museum".to_owned()]).ends_with("among the worlds: museum"));
     }
 
     #[test]
