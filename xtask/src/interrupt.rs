@@ -24,6 +24,12 @@ impl Interrupt {
         Ok(Self(pressed))
     }
 
+    /// As if it had been pressed.
+    #[cfg(test)]
+    pub(crate) fn pressed() -> Self {
+        Self(Arc::new(AtomicBool::new(true)))
+    }
+
     pub(crate) fn is_pressed(&self) -> bool {
         self.0.load(Ordering::SeqCst)
     }
