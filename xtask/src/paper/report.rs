@@ -150,11 +150,12 @@ impl Report {
         }
         page.paragraph(
             "configs/paper.ron decides the verdicts; configs/b21r.ron, with our additions, is a second column. What the \
-             campaigns set otherwise stands under What was run: cells of .2 m instead of .1 m, to save time, though σ and γ were \
-             fitted at .1 m. Nothing was tuned for a claim, and thresholds were written before results were seen. The unit is a paired (start, \
+             campaigns set otherwise, such as the side of a cell, stands under What was run; σ and γ were fitted at .1 m. \
+             Nothing was tuned for a claim, and thresholds were written before results were seen. The unit is a paired (start, \
              seed). Tests: Student's t on the standard error of a bootstrap that draws whole starts; a claim needs all its \
-             tests, and pays for the others by Holm's correction. Where the robot did not explore its world, nothing is \
-             decided.",
+             tests, and pays for the others by Holm's correction. What rests on fewer than three groups, or on groups that \
+             are all alike, decides nothing. Where the robot did not explore its world in more than one of ten of the runs \
+             that a claim compares, nothing is decided, and these runs are named.",
         );
     }
 

@@ -27,8 +27,13 @@ fn trials(
     ratios.into_iter().map(trial).collect()
 }
 
-fn with_condition(runs: &Runs, mut trials: Vec<Trial>) -> Vec<Trial> {
-    trials.insert(0, explored(runs, &runs.strategies()));
+fn with_condition(runs: &Runs, trials: Vec<Trial>) -> Vec<Trial> {
+    with_condition_on(runs, &runs.strategies(), trials)
+}
+
+/// Tests that compare some strategies, with the condition that these explored their world.
+fn with_condition_on(runs: &Runs, compared: &[Strategy], mut trials: Vec<Trial>) -> Vec<Trial> {
+    trials.insert(0, explored(runs, compared));
     trials
 }
 
@@ -46,12 +51,13 @@ pub(crate) fn claim_10(runs: &Runs) -> Finding {
 
 /// Fig. 7 (a): IG_CL(1.0) needs about as many as IG.
 pub(crate) fn claim_11(runs: &Runs) -> Finding {
-    let ratio = runs.paired(&[IG_CL_1, Strategy::Ig], SCANS).ratio(0, 1);
+    let both = [IG_CL_1, Strategy::Ig];
+    let ratio = runs.paired(&both, SCANS).ratio(0, 1);
     let what = "scans, IG_CL(1.0) / IG (two one-sided tests)";
     Finding::new(
         11,
         "Fig. 7a: IG_CL(1.0) needs as many scans as IG, within 20 %",
-        with_condition(runs, vec![Trial::new(what, ratio, Bound::Between(0.8, 1.2))]),
+        with_condition_on(runs, &both, vec![Trial::new(what, ratio, Bound::Between(0.8, 1.2))]),
     )
 }
 
@@ -110,15 +116,9 @@ pub(crate) fn claim_19(runs: &Runs, speed: f64) -> Finding {
     Finding::new(
         19,
         "section 5.2: if measurements are integrated while driving, CL outperforms IG in path and time",
-        with_condition(
-            &Runs {
-                runs: runs
-                    .runs
-                    .iter()
-                    .filter(|r| [Strategy::Ig, Strategy::Cl].contains(&r.strategy))
-                    .cloned()
-                    .collect(),
-            },
+        with_condition_on(
+            runs,
+            &both,
             vec![
                 Trial::new("path, IG / CL", units.ratio(0, 1), Bound::Above(1.0)),
                 Trial::new(format!("time at {speed} m/s, IG less CL [s]"), time, Bound::Above(0.0)),

@@ -15,7 +15,9 @@ const WEIGHTS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 
 /// Section 5.2: IG_CL(.3) is a good trade-off, better than IG_WIN.
 pub(crate) fn claim_15(runs: &Runs, driving: &Runs) -> Finding {
-    let mut trials = vec![explored(runs, &[Strategy::Cl, IG_CL_3])];
+    let compared: Vec<Strategy> =
+        [Strategy::Cl, IG_CL_3].into_iter().chain(windows(runs)).collect();
+    let mut trials = vec![explored(runs, &compared)];
     trials.extend(WEIGHTS.iter().map(|weight| {
         let what = format!("cost for w = {weight}, IG_CL(.3) less the best IG_WIN");
         Trial::new(what, advantage(runs, *weight), Bound::Below(0.0))
@@ -30,11 +32,15 @@ pub(crate) fn claim_15(runs: &Runs, driving: &Runs) -> Finding {
     })
 }
 
+/// IG_WIN with all its radii.
+fn windows(runs: &Runs) -> Vec<Strategy> {
+    runs.strategies().into_iter().filter(|s| matches!(s, Strategy::IgWin { .. })).collect()
+}
+
 /// The mean cost of IG_CL(.3) less that of IG_WIN with the radius that was best on the other
 /// seeds (on the same, if there is only one).
 fn advantage(runs: &Runs, weight: f64) -> Option<Estimate> {
-    let windows: Vec<Strategy> =
-        runs.strategies().into_iter().filter(|s| matches!(s, Strategy::IgWin { .. })).collect();
+    let windows = windows(runs);
     if windows.is_empty() {
         return None;
     }
@@ -98,7 +104,7 @@ pub(crate) fn claim_16(limits: &Limits, runs: &Runs) -> Finding {
         vec![
             Trial::fact("IG_CL(0) makes the same scans at the same places as CL", limits.zero_is_cl),
             Trial::fact("IG_CL(10⁹) makes those of IG", limits.huge_is_ig),
-            explored(runs, &runs.strategies()),
+            explored(runs, &with_alpha(runs).0),
             Trial::new("mean τ of α and the path", trend(runs, PATH, 1.0), Bound::Above(0.6)),
             Trial::new("mean τ of α and the scans, negative", trend(runs, SCANS, -1.0), Bound::Above(0.6)),
         ],
@@ -108,6 +114,12 @@ pub(crate) fn claim_16(limits: &Limits, runs: &Runs) -> Finding {
 
 /// How a metric grows with α in each unit, from CL (0) over all IG_CL to IG (∞).
 fn trend(runs: &Runs, metric: &str, sign: f64) -> Option<Estimate> {
+    let (strategies, alphas) = with_alpha(runs);
+    mean_tau(&alphas, &runs.paired_by(&strategies, |run| sign * run.value(metric)))
+}
+
+/// CL, all IG_CL and IG, with their α.
+fn with_alpha(runs: &Runs) -> (Vec<Strategy>, Vec<f64>) {
     let alpha = |strategy: &Strategy| match strategy {
         Strategy::Cl => Some(0.0),
         Strategy::IgCl { alpha } => Some(*alpha),
@@ -116,8 +128,7 @@ fn trend(runs: &Runs, metric: &str, sign: f64) -> Option<Estimate> {
     };
     let with_alpha =
         runs.strategies().into_iter().filter_map(|s| alpha(&s).map(|alpha| (s, alpha)));
-    let (strategies, alphas): (Vec<Strategy>, Vec<f64>) = with_alpha.unzip();
-    mean_tau(&alphas, &runs.paired_by(&strategies, |run| sign * run.value(metric)))
+    with_alpha.unzip()
 }
 
 #[cfg(test)]
