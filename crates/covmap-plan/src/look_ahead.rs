@@ -28,15 +28,17 @@ pub(crate) struct Cone {
 /// p(d | c) from neighbouring view-points.
 #[derive(Debug, Clone)]
 pub(crate) struct Ahead {
-    /// P(k), then the probability of no echo.
-    probabilities: Vec<Wide>,
+    /// k and P(k) of the echoes that are possible from one of them.
+    echoes: Vec<(usize, Wide)>,
+    /// The outcome past all echoes.
+    no_echo: (usize, Wide),
     /// How many rings decide.
     traced: Wide,
 }
 
 impl Ahead {
     pub(crate) fn new() -> Self {
-        Self { probabilities: Vec::new(), traced: [0.0; LANES] }
+        Self { echoes: Vec::new(), no_echo: (0, [0.0; LANES]), traced: [0.0; LANES] }
     }
 
     /// The outcomes that matter to one of some view-points, with their probabilities: 0 for
@@ -46,7 +48,7 @@ impl Ahead {
         let least: Wide = std::array::from_fn(|lane| {
             if view_points >> lane & 1 == 1 { NEGLIGIBLE } else { f64::INFINITY }
         });
-        for (k, p) in self.probabilities.iter().enumerate() {
+        for (k, p) in self.echoes.iter().chain([&self.no_echo]) {
             let mut likely = [0.0; LANES];
             for lane in 0..LANES {
                 #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
@@ -54,7 +56,7 @@ impl Ahead {
                 likely[lane] = if p[lane] > least[lane] { narrow } else { 0.0 };
             }
             if likely.iter().fold(0.0, |a: f32, b| a.max(*b)) > 0.0 {
-                take(k, likely);
+                take(*k, likely);
             }
         }
     }
@@ -78,54 +80,63 @@ impl Cone {
     /// rasters.
     #[inline(always)]
     pub(crate) fn look(&self, cells: &Cells, here: usize, out: &mut Ahead) {
-        #[allow(clippy::cast_precision_loss, reason = "some hundred outcomes")]
-        let even = self.uniform_share / (self.beam.rings.len() + 1) as f64;
+        let rings = self.beam.rings.len();
+        let even = self.uniform_share / (as_f64(rings) + 1.0);
         let keep = 1.0 - self.uniform_share;
-        let Ahead { probabilities, traced } = out;
-        probabilities.clear();
-        *traced = [0.0; LANES];
+        let Ahead { echoes, no_echo, traced } = out;
+        echoes.clear();
+        *traced = [as_f64(rings); LANES];
         let mut survival = [1.0; LANES];
-        for ring in &self.beam.rings {
+        for (k, ring) in self.beam.rings.iter().enumerate() {
             let mut q = [0.0; LANES];
-            if survival.iter().any(|s| *s > 0.0) {
-                let offsets = &self.offsets[ring.clone()];
-                for (offset, weight) in offsets.iter().zip(&self.beam.weights[ring.clone()]) {
-                    let rho: &Wide = lanes(cells.reflections(), here, *offset);
-                    for lane in 0..LANES {
-                        q[lane] += weight * rho[lane];
-                    }
+            let offsets = &self.offsets[ring.clone()];
+            for (offset, weight) in offsets.iter().zip(&self.beam.weights[ring.clone()]) {
+                let rho: &Wide = lanes(cells.reflections(), here, *offset);
+                for lane in 0..LANES {
+                    q[lane] += weight * rho[lane];
                 }
+            }
+            // In free space most rings reflect nothing: no echo from there.
+            if even == 0.0 && all_zero(&q) {
+                continue;
             }
             let mut p = [0.0; LANES];
             for lane in 0..LANES {
                 // The weights sum to 1 but for rounding.
                 let q = if q[lane] > 1.0 - 1e-12 { 1.0 } else { q[lane] };
-                traced[lane] += if survival[lane] > 0.0 { 1.0 } else { 0.0 };
                 p[lane] = keep * survival[lane] * q + even;
-                survival[lane] *= 1.0 - q;
+                let left = survival[lane] * (1.0 - q);
+                let ends = survival[lane] > 0.0 && left <= 0.0;
+                traced[lane] = if ends { as_f64(k + 1) } else { traced[lane] };
+                survival[lane] = left;
             }
-            probabilities.push(p);
+            echoes.push((k, p));
+            if even == 0.0 && all_zero(&survival) {
+                break;
+            }
         }
-        probabilities.push(survival.map(|s| keep * s + even));
+        *no_echo = (rings, survival.map(|s| keep * s + even));
     }
 
-    /// V(l) of the beam: how many of its cells are in sight.
+    /// V(l) of the beam: how many of its cells are in sight. An echo that is impossible changes no
+    /// sum, and what it covers one from farther away covers, too.
     #[inline(always)]
     pub(crate) fn in_sight(&self, ahead: &Ahead) -> [u16; LANES] {
         const LIKELY: f64 = 0.5 - 1e-12;
         let (mut tail, mut seen) = ([0.0; LANES], [0.0; LANES]);
-        let Some((no_echo, echo)) = ahead.probabilities.split_last() else { return [0; LANES] };
+        let (_, no_echo) = &ahead.no_echo;
         let mut with_no_echo = *no_echo;
         let last = self.beam.no_echo_reach;
-        for (p, reach) in echo.iter().zip(&self.beam.echo_reach).rev() {
-            let cells = as_f64(*reach);
+        for (k, p) in ahead.echoes.iter().rev() {
+            let reach = self.beam.echo_reach[*k];
+            let cells = as_f64(reach);
             for lane in 0..LANES {
                 tail[lane] += p[lane];
-                let total = if *reach <= last { tail[lane] + no_echo[lane] } else { tail[lane] };
+                let total = if reach <= last { tail[lane] + no_echo[lane] } else { tail[lane] };
                 let here = if total >= LIKELY { cells } else { 0.0 };
                 seen[lane] = if here > seen[lane] { here } else { seen[lane] };
             }
-            if *reach >= last {
+            if reach >= last {
                 for lane in 0..LANES {
                     with_no_echo[lane] = tail[lane] + no_echo[lane];
                 }
@@ -146,8 +157,8 @@ impl Cone {
     #[inline(always)]
     pub(crate) fn dependency(&self, ahead: &Ahead, view_points: u16) -> u16 {
         let mut farthest = [0.0; LANES];
-        for (k, p) in ahead.probabilities.iter().enumerate() {
-            let reach = as_f64(self.beam.reach(k));
+        for (k, p) in ahead.echoes.iter().chain([&ahead.no_echo]) {
+            let reach = as_f64(self.beam.reach(*k));
             for lane in 0..LANES {
                 let covered = if p[lane] > 0.0 { reach } else { 0.0 };
                 farthest[lane] = if covered > farthest[lane] { covered } else { farthest[lane] };
@@ -194,6 +205,16 @@ impl Cone {
     pub(crate) fn cells(&self, in_sight: u16) -> impl Iterator<Item = (&crate::StencilCell, f32)> {
         self.beam.cells[..usize::from(in_sight)].iter().zip(self.distances.iter().copied())
     }
+}
+
+/// Whether no lane is above 0, where none is below. Compared as bits, side by side.
+#[inline(always)]
+fn all_zero(lanes: &Wide) -> bool {
+    let mut bits = 0;
+    for lane in lanes {
+        bits |= lane.to_bits();
+    }
+    bits == 0
 }
 
 fn bits(lanes: &[u16; LANES]) -> u16 {
