@@ -260,3 +260,20 @@ fn figures(judged: &Judged) -> Vec<String> {
     };
     judged.finding.trials.iter().map(trial).chain(judged.finding.notes.iter().cloned()).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_an_earlier_report_left_is_removed_and_nothing_else() {
+        let dir = tempfile::tempdir().unwrap();
+        let output = Output::create(dir.path()).unwrap();
+        for name in ["figure5b-b21r.svg", "figure7.png", "worlds.csv", "report.html", "mine.svg"] {
+            std::fs::write(output.path(name), "old").unwrap();
+        }
+        clear(&output).unwrap();
+        let left: Vec<_> = std::fs::read_dir(dir.path()).unwrap().flatten().collect();
+        assert!(matches!(&left[..], [entry] if entry.file_name() == "mine.svg"), "{left:?}");
+    }
+}
