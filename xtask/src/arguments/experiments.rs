@@ -7,7 +7,8 @@ use std::path::PathBuf;
 
 pub(super) const FIGURE_EXAMPLES: &str = "\
 DIR/figureN.svg and .png are the figure, DIR/figureN*.csv the numbers behind it. Figures 5, 6 and 7
-need campaigns, which are taken from DIR/campaigns as far as they are done there.
+need campaigns, which are taken from DIR/campaigns as far as they are done there. Figure 5 repeats a
+recorded run of each technique for its map; figure 7 (c) and (d) are the recorded paths.
 
 Examples:
   cargo xtask figure 1
