@@ -32,6 +32,11 @@ impl Nodes {
         Self { at: points.to_vec(), weights: (0..points.len()).map(row).collect() }
     }
 
+    /// So many nodes; the points themselves if that is as many.
+    pub(crate) fn new(points: &[f64], count: usize, shift: Option<f64>) -> Self {
+        if count < points.len() { Self::chebyshev(points, count, shift) } else { Self::all(points) }
+    }
+
     /// `count` Chebyshev nodes over the span of the points, equally good in the variable
     /// `ln(x + shift)`; in x itself if there is no shift.
     fn chebyshev(points: &[f64], count: usize, shift: Option<f64>) -> Self {
@@ -58,7 +63,7 @@ impl Nodes {
         let exact: Vec<Vec<f64>> = points.iter().map(|x| probes.after(&evidence(*x))).collect();
         let allowed = probes.allowed(&exact, leniency);
         for count in 1..points.len() {
-            let nodes = Self::chebyshev(points, count, shift);
+            let nodes = Self::new(points, count, shift);
             let at: Vec<Vec<f64>> = nodes.at.iter().map(|x| probes.after(&evidence(*x))).collect();
             let good = |(weights, exact): (&Vec<f64>, &Vec<f64>)| {
                 (0..exact.len()).all(|probe| {

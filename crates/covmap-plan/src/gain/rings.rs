@@ -8,12 +8,10 @@
 use super::evidence::{Evidence, Reading};
 use super::interpolation::{Nodes, Probes};
 use crate::{BeamStencil, Stencil};
+use covmap::lanes::TOGETHER;
 use covmap_model::{Linear, Outcome, SensorModel};
 use std::collections::BTreeSet;
 use std::ops::Range;
-
-/// How many nodes are mixed at once.
-pub(crate) const TOGETHER: usize = 4;
 
 /// See [`Builder::leniency`].
 const MOST_LENIENT: f64 = 10.0;
@@ -30,16 +28,21 @@ pub(crate) struct Ring {
     pub(crate) cells: Vec<Range<usize>>,
 }
 
-/// The outcomes from beyond the ring: the gain of each is a mixture of those at some ranges.
+/// The outcomes from beyond the ring: the gain of each is a mixture of those at some ranges,
+/// each of these of the gains at the same few distances. Its readings are the ring's first,
+/// range by range.
 #[derive(Debug, Clone)]
 pub(crate) struct Front {
     /// The nearest of the outcomes.
     pub(crate) first: usize,
-    /// For some nodes together their weights in every outcome from the nearest on; 0 past the
-    /// last node.
+    /// How many ranges, and how many distances.
+    pub(crate) ranges: usize,
+    pub(crate) distances: usize,
+    /// For [`TOGETHER`] ranges their weights in every outcome from the nearest on; 0 past the
+    /// last range.
     pub(crate) weights: Vec<Vec<[f32; TOGETHER]>>,
-    /// For each node where the gains come from.
-    pub(crate) sources: Vec<Source>,
+    /// For each beam, for each of its cells, the weight of every distance.
+    pub(crate) of_cells: Vec<Vec<f32>>,
 }
 
 /// From which readings the gains of a ring's cells are taken.
@@ -183,16 +186,24 @@ impl<'a> Builder<'a> {
         let at = |distance, range| Evidence::new(model, distance, Outcome::Echo(range));
         let shift = shift(&model.parameters().gamma, middle);
         let in_range = Nodes::few(ranges, shift, probes, |range| at(middle, range));
-        let sources = in_range.at.iter();
-        let sources =
-            sources.map(|range| self.smooth(first, |distance| at(distance, *range))).collect();
+        let needed = |range: &f64| {
+            Nodes::few(&self.distances, None, probes, |distance| at(distance, *range)).at.len()
+        };
+        let distances = in_range.at.iter().map(needed).max().unwrap_or(1);
+        let in_distance = Nodes::new(&self.distances, distances, None);
+        for range in &in_range.at {
+            for distance in &in_distance.at {
+                self.push(&at(*distance, *range));
+            }
+        }
         let weight = |row: &[f64], node: usize| row.get(node).map_or(0.0, |w| to_f32(*w));
         let mixed = |first: usize| {
             let row = |row: &Vec<f64>| std::array::from_fn(|i| weight(row, first + i));
             in_range.weights.iter().map(row).collect()
         };
         let weights = (0..in_range.at.len()).step_by(TOGETHER).map(mixed).collect();
-        Front { first, weights, sources }
+        let of_cells = self.of_cells(&in_distance, first);
+        Front { first, ranges: in_range.at.len(), distances, weights, of_cells }
     }
 
     /// One outcome that ends in the ring, or before it.
@@ -222,6 +233,13 @@ impl<'a> Builder<'a> {
         for at in &nodes.at {
             self.push(&evidence(*at));
         }
+        Source { first, count, shares: Shares::Weights(self.of_cells(&nodes, k)) }
+    }
+
+    /// For each beam and each of its cells what every node weighs; nothing in cells that the
+    /// outcome does not cover.
+    fn of_cells(&self, nodes: &Nodes, k: usize) -> Vec<Vec<f32>> {
+        let count = nodes.at.len();
         let mut weights: Vec<Vec<f32>> =
             self.cells.iter().map(|cells| vec![0.0; cells.len() * count]).collect();
         for (beam, i) in self.covered(k) {
@@ -231,7 +249,7 @@ impl<'a> Builder<'a> {
             let row = nodes.weights[point].iter().map(|w| to_f32(*w));
             weights[beam][at..at + count].iter_mut().zip(row).for_each(|(to, w)| *to = w);
         }
-        Source { first, count, shares: Shares::Weights(weights) }
+        weights
     }
 }
 

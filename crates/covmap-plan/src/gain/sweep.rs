@@ -5,12 +5,12 @@
 //! summed over the cells of each beam of each view-point, [`LANES`] neighbours of a row side by
 //! side.
 
-use super::rings::{Ring, Shares, Source, TOGETHER, rings};
-use crate::Stencil;
+use super::rings::{Front, Ring, Shares, Source, rings};
 use crate::cells::Cells;
 use crate::view_points::groups;
+use crate::{Stencil, StencilCell};
 use covmap::Grid;
-use covmap::lanes::{LANES, Lanes};
+use covmap::lanes::{LANES, Lanes, TOGETHER};
 use covmap_model::SensorModel;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -57,18 +57,41 @@ const AT_ONCE: usize = 16;
 /// which took more than half of the time of an exploration by CL, whose reports have few units.
 const SHARED: usize = 1024;
 
-/// Which readings of a block of cells are asked for.
-const FRONT: u8 = 1;
-const NEAR: u8 = 2;
-const NO_ECHO: u8 = 4;
+/// A run of neighbouring cells from a view-point: row, first and last column, and which readings
+/// of theirs are asked for, bit by bit.
+#[derive(Debug, Clone, Copy)]
+struct Ask {
+    dy: isize,
+    first: isize,
+    last: isize,
+    readings: u64,
+}
+
+/// The bit of a reading: with more than 64 several share one.
+#[inline(always)]
+fn bit(reading: usize) -> u64 {
+    1 << (reading % 64)
+}
+
+/// What a ring's outcomes ask for: some readings of all its cells, or for each beam what its
+/// cells ask for themselves.
+#[derive(Debug, Clone)]
+struct Asks {
+    /// For each beam all its cells.
+    cells: Vec<Vec<Ask>>,
+    front: u64,
+    /// In the order of the ring's own.
+    near: Vec<(u64, Vec<Vec<Ask>>)>,
+    no_echo: u64,
+}
 
 /// Computes E\[I\] of many beams.
 #[derive(Debug, Clone)]
 pub(crate) struct Sweep {
     grid: Grid,
     rings: Vec<Ring>,
-    /// The runs of cells of each ring and beam: row, first and last column from the view-point.
-    runs: Vec<Vec<Vec<(isize, isize, isize)>>>,
+    /// For each ring.
+    asks: Vec<Asks>,
     /// For each beam where its cells lie in the planes from the view-point.
     offsets: Vec<Vec<isize>>,
     /// The outcome that is no echo.
@@ -88,10 +111,10 @@ impl Sweep {
         let stride = grid.width().next_multiple_of(LANES) + 2 * border;
         let row = stride * rings.iter().map(|ring| ring.readings.len()).max().unwrap_or(0);
         let width = isize::try_from(row).unwrap_or(0);
-        let offset = |c: &crate::StencilCell| c.dy as isize * width + c.dx as isize;
+        let offset = |c: &StencilCell| c.dy as isize * width + c.dx as isize;
         Self {
             grid,
-            runs: rings.iter().map(|ring| runs(ring, stencil)).collect(),
+            asks: rings.iter().map(|ring| asks(ring, stencil)).collect(),
             rings,
             offsets: stencil.beams.iter().map(|b| b.cells.iter().map(offset).collect()).collect(),
             no_echo: stencil.ranges.len(),
@@ -111,9 +134,11 @@ impl Sweep {
         let together = if units < SHARED { usize::MAX } else { 1 };
         // Rows of planes from `low` − border on; those outside of the grid stay 0.
         let mut planes = vec![0.0f32; (high - low + 1 + 2 * self.border) * self.row];
-        for (ring, runs) in self.rings.iter().zip(&self.runs) {
-            let asked = self.asked(ring, runs, rows, low, high);
-            let blocks = groups(&self.grid);
+        let blocks = groups(&self.grid);
+        let mut asked = vec![0; (high - low + 1 + 2 * self.border) * blocks];
+        for (ring, asks) in self.rings.iter().zip(&self.asks) {
+            asked.fill(0);
+            self.ask(ring, asks, rows, low, &mut asked);
             let filled = planes.par_chunks_mut(self.row).zip(asked.par_chunks(blocks)).enumerate();
             filled.with_min_len(together).for_each(|(y, (planes, asked))| {
                 let y = (y + low).checked_sub(self.border);
@@ -127,46 +152,45 @@ impl Sweep {
         }
     }
 
-    /// For every block of cells, which readings of a ring the units need.
-    fn asked(
-        &self,
-        ring: &Ring,
-        runs: &[Vec<(isize, isize, isize)>],
-        rows: &mut [Row],
-        low: usize,
-        high: usize,
-    ) -> Vec<u8> {
-        let (blocks, border) = (groups(&self.grid), self.border);
-        let mut asked = vec![0; (high - low + 1 + 2 * border) * blocks];
-        let lanes = LANES.cast_signed();
+    /// For every block of cells from the first row's on, which readings of a ring the units need.
+    fn ask(&self, ring: &Ring, asks: &Asks, rows: &mut [Row], low: usize, asked: &mut [u64]) {
+        let blocks = groups(&self.grid);
+        let (lanes, last_block) = (LANES.cast_signed(), blocks.cast_signed() - 1);
         let nearest = ring.near.first().map_or(0, |(k, _)| *k);
         for row in rows {
-            for unit in &mut row.units {
-                while unit.likely.start < unit.likely.end
-                    && row.outcomes[unit.likely.start] < nearest
-                {
-                    unit.likely.start += 1;
-                }
-                unit.sides = self.sides(ring, unit.likely.clone(), &row.outcomes);
-                let wanted = if unit.sides.front.is_empty() { 0 } else { FRONT }
-                    | if unit.sides.near.is_empty() { 0 } else { NEAR }
-                    | if unit.sides.no_echo.is_some() { NO_ECHO } else { 0 };
-                if wanted == 0 {
-                    continue;
-                }
+            let Row { y, units, outcomes, .. } = row;
+            for unit in units {
+                let passed = outcomes[unit.likely.clone()].iter().take_while(|k| **k < nearest);
+                unit.likely.start += passed.count();
+                unit.sides = self.sides(ring, unit.likely.clone(), outcomes);
                 let x = (unit.group * LANES).cast_signed();
-                for (dy, first, last) in &runs[unit.beam] {
-                    let y = (row.y + border - low).wrapping_add_signed(*dy);
-                    let from = ((x + first) >> LANES.ilog2()).max(0);
-                    let to =
-                        ((x + last + lanes - 1) >> LANES.ilog2()).min(blocks.cast_signed() - 1);
-                    for block in from..=to {
-                        asked[(y * blocks).wrapping_add_signed(block)] |= wanted;
+                let mut ask = |asks: &[Ask], readings: u64| {
+                    for ask in asks {
+                        let y = (*y + self.border - low).wrapping_add_signed(ask.dy);
+                        let from = ((x + ask.first) >> LANES.ilog2()).max(0);
+                        let to = ((x + ask.last + lanes - 1) >> LANES.ilog2()).min(last_block);
+                        for block in from..=to {
+                            asked[(y * blocks).wrapping_add_signed(block)] |=
+                                ask.readings | readings;
+                        }
                     }
+                };
+                let mut of_all = if unit.sides.front.is_empty() { 0 } else { asks.front };
+                for k in &outcomes[unit.sides.near.clone()] {
+                    let place = ring.near.iter().position(|(near, _)| near == k);
+                    if let Some((readings, own)) = place.map(|place| &asks.near[place]) {
+                        of_all |= readings;
+                        own.get(unit.beam).into_iter().for_each(|own| ask(own, 0));
+                    }
+                }
+                if unit.sides.no_echo.is_some() {
+                    of_all |= asks.no_echo;
+                }
+                if of_all != 0 {
+                    ask(&asks.cells[unit.beam], of_all);
                 }
             }
         }
-        asked
     }
 
     /// Which of a unit's outcomes end near a ring, beyond it, and nowhere.
@@ -180,23 +204,43 @@ impl Sweep {
     }
 }
 
-/// The runs of neighbouring cells of a ring, for each beam.
-fn runs(ring: &Ring, stencil: &Stencil) -> Vec<Vec<(isize, isize, isize)>> {
-    let beams = stencil.beams.iter().zip(&ring.cells);
-    let runs = |(beam, cells): (&crate::BeamStencil, &Range<usize>)| {
-        let mut places: Vec<(isize, isize)> =
-            beam.cells[cells.clone()].iter().map(|c| (c.dy as isize, c.dx as isize)).collect();
-        places.sort_unstable();
-        let mut runs: Vec<(isize, isize, isize)> = Vec::new();
-        for (dy, dx) in places {
-            match runs.last_mut() {
-                Some((y, _, last)) if *y == dy && dx - *last < LANES.cast_signed() => *last = dx,
-                _ => runs.push((dy, dx, dx)),
-            }
+/// What each outcome of a ring asks for.
+fn asks(ring: &Ring, stencil: &Stencil) -> Asks {
+    let cells = |beam: usize| &stencil.beams[beam].cells[ring.cells[beam].clone()];
+    let bits = |readings: Range<usize>| readings.fold(0, |bits, reading| bits | bit(reading));
+    let of_source = |source: &Source| match &source.shares {
+        Shares::Weights(_) => (bits(source.first..source.first + source.count), Vec::new()),
+        Shares::Own(own) => {
+            let ask = |(beam, own): (usize, &Vec<(usize, usize)>)| {
+                runs(own.iter().map(|(i, reading)| (&cells(beam)[*i], bit(source.first + reading))))
+            };
+            (0, own.iter().enumerate().map(ask).collect())
         }
-        runs
     };
-    beams.map(runs).collect()
+    let all = |beam| runs(cells(beam).iter().map(|cell| (cell, 0)));
+    Asks {
+        cells: (0..stencil.beams.len()).map(all).collect(),
+        front: ring.front.as_ref().map_or(0, |front| bits(0..front.ranges * front.distances)),
+        near: ring.near.iter().map(|(_, source)| of_source(source)).collect(),
+        no_echo: ring.no_echo.as_ref().map_or(0, |source| of_source(source).0),
+    }
+}
+
+/// Runs of neighbouring cells, with the readings that any of them asks for.
+fn runs<'a>(cells: impl Iterator<Item = (&'a StencilCell, u64)>) -> Vec<Ask> {
+    let mut places: Vec<(isize, isize, u64)> =
+        cells.map(|(cell, readings)| (cell.dy as isize, cell.dx as isize, readings)).collect();
+    places.sort_unstable();
+    let mut runs: Vec<Ask> = Vec::new();
+    for (dy, dx, readings) in places {
+        match runs.last_mut() {
+            Some(run) if run.dy == dy && dx - run.last < LANES.cast_signed() => {
+                (run.last, run.readings) = (dx, run.readings | readings);
+            }
+            _ => runs.push(Ask { dy, first: dx, last: dx, readings }),
+        }
+    }
+    runs
 }
 
 /// Evaluates the readings of a ring for one row of cells.
@@ -205,7 +249,7 @@ struct Fill<'a> {
     ring: &'a Ring,
     cells: &'a Cells,
     y: usize,
-    asked: &'a [u8],
+    asked: &'a [u64],
     planes: &'a mut [f32],
 }
 
@@ -215,18 +259,13 @@ impl WithSimd for Fill<'_> {
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
         let Self { sweep, ring, cells, y, asked, planes } = self;
-        let no_echo = ring.no_echo.as_ref().map_or(ring.readings.len(), |source| source.first);
-        let near = ring.near.first().map_or(no_echo, |(_, source)| source.first);
-        // The order of the readings: in front, near, no echo.
-        let kinds =
-            [(FRONT, 0..near), (NEAR, near..no_echo), (NO_ECHO, no_echo..ring.readings.len())];
         for (x, asked) in asked.iter().enumerate().filter(|(_, asked)| **asked != 0) {
             let prior = cells.block(y * groups(&sweep.grid) + x);
             let column = sweep.border + x * LANES;
-            for (_, readings) in kinds.iter().filter(|(kind, _)| asked & kind != 0) {
-                for i in readings.clone() {
+            for (i, reading) in ring.readings.iter().enumerate() {
+                if asked & bit(i) != 0 {
                     let at = i * sweep.stride + column;
-                    planes[at..at + LANES].copy_from_slice(&prior.gain(&ring.readings[i]));
+                    planes[at..at + LANES].copy_from_slice(&prior.gain(reading));
                 }
             }
         }
@@ -268,22 +307,20 @@ impl WithSimd for Sum<'_> {
                 let gain = &mut of_ring;
                 let cells = &sweep.offsets[unit.beam][ring.cells[unit.beam].clone()];
                 let here = start + unit.group * LANES;
-                let sum =
-                    |source: &Source| source.sum(unit.beam, cells, planes, here, sweep.stride);
-                if !unit.sides.front.is_empty() {
-                    let shares = shares[i * mixtures.len()..].as_flattened();
-                    for (source, share) in ring.front.iter().flat_map(|f| &f.sources).zip(shares) {
-                        add_product(gain, share, &sum(source));
-                    }
+                let place = (here, sweep.stride);
+                if let Some(front) = ring.front.as_ref().filter(|_| !unit.sides.front.is_empty()) {
+                    let shares = &shares[i * mixtures.len()..(i + 1) * mixtures.len()];
+                    front.add(gain, shares, unit.beam, cells, planes, place);
                 }
                 let near = unit.sides.near.clone();
                 for (k, p) in outcomes[near.clone()].iter().zip(&probabilities[near]) {
                     if let Some((_, source)) = ring.near.iter().find(|(near, _)| near == k) {
-                        add_product(gain, p, &sum(source));
+                        add_product(gain, p, &source.sum(unit.beam, cells, planes, place));
                     }
                 }
-                if let Some((source, place)) = ring.no_echo.as_ref().zip(unit.sides.no_echo) {
-                    add_product(gain, &probabilities[place], &sum(source));
+                if let Some((source, k)) = ring.no_echo.as_ref().zip(unit.sides.no_echo) {
+                    let sum = source.sum(unit.beam, cells, planes, place);
+                    add_product(gain, &probabilities[k], &sum);
                 }
                 for lane in 0..LANES {
                     total[lane] += f64::from(of_ring[lane]);
@@ -311,6 +348,80 @@ fn mix_outcomes<'a>(
     [a, b, c, d]
 }
 
+impl Front {
+    /// Adds the gains of a beam's cells, given the shares of the ranges.
+    #[inline(always)]
+    fn add(
+        &self,
+        gain: &mut Lanes,
+        shares: &[[Lanes; TOGETHER]],
+        beam: usize,
+        cells: &[isize],
+        planes: &[f32],
+        (here, stride): (usize, usize),
+    ) {
+        let of_cells = &self.of_cells[beam];
+        let per_range = self.distances * stride;
+        for (some, shares) in shares.iter().enumerate() {
+            let first = here + some * TOGETHER * per_range;
+            let ranges = (self.ranges - some * TOGETHER).min(TOGETHER);
+            let strides = (stride, per_range);
+            let sums = match (self.distances, ranges) {
+                (1, 1) => mix_ranges::<1, 1>(of_cells, cells, planes, first, strides),
+                (1, 2) => mix_ranges::<1, 2>(of_cells, cells, planes, first, strides),
+                (1, 3) => mix_ranges::<1, 3>(of_cells, cells, planes, first, strides),
+                (1, _) => mix_ranges::<1, 4>(of_cells, cells, planes, first, strides),
+                (2, 1) => mix_ranges::<2, 1>(of_cells, cells, planes, first, strides),
+                (2, 2) => mix_ranges::<2, 2>(of_cells, cells, planes, first, strides),
+                (2, 3) => mix_ranges::<2, 3>(of_cells, cells, planes, first, strides),
+                (2, _) => mix_ranges::<2, 4>(of_cells, cells, planes, first, strides),
+                (3, 1) => mix_ranges::<3, 1>(of_cells, cells, planes, first, strides),
+                (3, 2) => mix_ranges::<3, 2>(of_cells, cells, planes, first, strides),
+                (3, 3) => mix_ranges::<3, 3>(of_cells, cells, planes, first, strides),
+                (3, _) => mix_ranges::<3, 4>(of_cells, cells, planes, first, strides),
+                (distances, ranges) => {
+                    let mut sums = [[0.0; LANES]; TOGETHER];
+                    for (offset, weights) in cells.iter().zip(of_cells.chunks_exact(distances)) {
+                        let at = first.wrapping_add_signed(*offset);
+                        for (range, sum) in sums.iter_mut().enumerate().take(ranges) {
+                            for (i, weight) in weights.iter().enumerate() {
+                                let at = at + range * per_range + i * stride;
+                                add(sum, lanes(planes, at), *weight);
+                            }
+                        }
+                    }
+                    sums
+                }
+            };
+            for (share, sum) in shares.iter().zip(&sums) {
+                add_product(gain, share, sum);
+            }
+        }
+    }
+}
+
+/// Σ of the gains of some cells at each of R ranges, with D weights for each cell; 0 for the
+/// ranges from R on.
+#[inline(always)]
+fn mix_ranges<const D: usize, const R: usize>(
+    of_cells: &[f32],
+    cells: &[isize],
+    planes: &[f32],
+    first: usize,
+    (stride, per_range): (usize, usize),
+) -> [Lanes; TOGETHER] {
+    let mut sums = [[0.0; LANES]; R];
+    for (offset, weights) in cells.iter().zip(of_cells.as_chunks::<D>().0) {
+        let at = first.wrapping_add_signed(*offset);
+        for (range, sum) in sums.iter_mut().enumerate() {
+            for (i, weight) in weights.iter().enumerate() {
+                add(sum, lanes(planes, at + range * per_range + i * stride), *weight);
+            }
+        }
+    }
+    std::array::from_fn(|range| if range < R { sums[range] } else { [0.0; LANES] })
+}
+
 impl Source {
     /// The gains of a beam's cells, summed.
     #[inline(always)]
@@ -319,8 +430,7 @@ impl Source {
         beam: usize,
         cells: &[isize],
         planes: &[f32],
-        here: usize,
-        stride: usize,
+        (here, stride): (usize, usize),
     ) -> Lanes {
         let first = here + self.first * stride;
         match &self.shares {
