@@ -9,6 +9,7 @@ pub(crate) use experiments::{Experiments, Figure, Paper, Table};
 
 use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use covmap_model::Registers;
 use covmap_plan::Strategy;
 use nalgebra::Isometry2;
 use std::num::NonZeroUsize;
@@ -285,12 +286,35 @@ pub(crate) struct Explore {
     /// [default: where the scenario says, or in the roomiest place]
     #[arg(long, value_name = "X,Y,DEG", value_parser = start, allow_hyphen_values = true)]
     pub(crate) start: Option<Isometry2<f64>>,
+    /// The widest vector registers that are used, to compare: all give the same bits [default:
+    /// the fastest of this machine]
+    #[arg(long, value_name = "KIND")]
+    pub(crate) registers: Option<WidestRegisters>,
     /// Where the results go [default: out/WORLD-STRATEGY-SEED]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+/// The widest vector registers that are used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum WidestRegisters {
+    Scalar,
+    Avx2,
+    Avx512,
+}
+
+impl WidestRegisters {
+    pub(crate) fn limit(self) {
+        let registers = match self {
+            Self::Scalar => Registers::Scalar,
+            Self::Avx2 => Registers::Avx2,
+            Self::Avx512 => Registers::Avx512,
+        };
+        registers.limit();
+    }
 }
 
 #[derive(Debug, Args)]

@@ -25,6 +25,9 @@ pub(crate) struct Task {
 
 pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
+    if let Some(widest) = arguments.registers {
+        widest.limit();
+    }
     let task = task(arguments)?;
     let folder = OutputFolder::create(folder_name(arguments, &task))?;
     let mut progress = Progress::new(arguments.quiet);

@@ -29,6 +29,7 @@ mod footprint;
 mod integrate;
 mod occupancy;
 mod parameters;
+mod registers;
 mod scan_counts;
 mod sensor_model;
 
@@ -38,5 +39,6 @@ pub use integrate::{
 };
 pub use occupancy::{OccupancyGrid, OccupancyParameters};
 pub use parameters::{Linear, ModelError, ModelParameters, NoEchoParameters};
+pub use registers::Registers;
 pub use scan_counts::{Counting, ScanCounts};
 pub use sensor_model::{Outcome, SensorModel};

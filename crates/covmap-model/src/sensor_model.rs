@@ -1,6 +1,6 @@
 //! Eq. (9) and (10): what one reading says about one cell.
 
-use crate::{Footprint, Linear, ModelError, ModelParameters};
+use crate::{Footprint, Linear, ModelError, ModelParameters, Registers};
 use covmap::{CoverageMap, Histogram, bin_coverage};
 use covmap_sonar::{Range, SonarRing};
 use std::f64::consts::PI;
@@ -52,7 +52,8 @@ impl SensorModel {
         parameters.validate()?;
         ModelError::within("resolution", resolution, 1e-3, 10.0)?;
         let footprint = Footprint::new(ring, &parameters.footprint)?;
-        let registers = registers();
+        // Integrating takes a fifth longer with wider ones.
+        let registers = Registers::Avx2.or_narrower();
         Ok(Self { parameters: parameters.clone(), resolution, footprint, registers })
     }
 
@@ -184,15 +185,6 @@ impl SensorModel {
         self.evidence(cell_distance, outcome, &mut weights);
         Histogram::from_weights(&weights).unwrap_or_else(|| Histogram::uniform(weights.len()))
     }
-}
-
-/// Registers of 256 bits where there are any: integrating takes a fifth longer with wider ones.
-fn registers() -> pulp::Arch {
-    #[cfg(target_arch = "x86_64")]
-    if let Some(registers) = pulp::x86::V3::try_new() {
-        return pulp::Arch::V3(registers);
-    }
-    pulp::Arch::new()
 }
 
 /// The density of a Gaussian, N(μ, σ, x) = exp(−z²/2) / (σ·√(2π)) with z = (x − μ)/σ.

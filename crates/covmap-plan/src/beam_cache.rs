@@ -8,7 +8,7 @@ use crate::view_points::{ViewPoints, groups, place};
 use crate::{PlannerParameters, Stencil};
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
-use covmap_model::SensorModel;
+use covmap_model::{Registers, SensorModel};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
@@ -90,7 +90,7 @@ impl BeamCache {
             states: vec![State::default(); units],
             in_sight: vec![[0; LANES]; units],
             gain: vec![[0.0; LANES]; units],
-            arch: Arch::new(),
+            arch: Registers::Avx512.or_narrower(),
         }
     }
 

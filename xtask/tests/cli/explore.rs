@@ -100,6 +100,18 @@ fn quiet_is_quiet() {
     assert_eq!((typed.out.as_str(), typed.err.as_str()), ("", ""));
 }
 
+/// Narrower registers than the processor has are used as asked for; wider ones cannot be.
+#[test]
+fn an_exploration_is_the_same_run_with_every_kind_of_vector_registers() {
+    let shell = Shell::new();
+    let hash = |kind: &str| {
+        shell.expect(&format!("{} --strategy IG --registers {kind} --quiet", short_run()), 3);
+        shell.json("run/summary.json")["trace_hash"].as_str().unwrap().to_owned()
+    };
+    let all = ["scalar", "avx2", "avx512"].map(hash);
+    assert!(all.iter().all(|hash| *hash == all[0]), "{all:?}");
+}
+
 #[test]
 fn the_same_command_is_the_same_run_on_any_number_of_threads() {
     let shell = Shell::new();
