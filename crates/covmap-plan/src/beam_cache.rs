@@ -13,7 +13,7 @@ use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// So many beams of groups are evaluated at once, at most: bounds the memory of what is likely from
-/// each, though not that of the rows of cells around them.
+/// each.
 const PORTION: usize = 1 << 17;
 
 /// So many rows of groups, or groups, are worked at by one thread at least: to wake another one
@@ -166,7 +166,7 @@ impl BeamCache {
         let rows: Vec<(usize, &[u16])> =
             wanted.groups().chunks(per_row).enumerate().filter(|row| stale(*row)).collect();
         let at_once = (PORTION / (per_row * beams)).max(1);
-        for rows in rows.chunks(at_once) {
+        for rows in portions(&rows, at_once, at_once.max(self.sweep.border())) {
             let look = |ahead: &mut Ahead, (y, wanted): &(usize, &[u16])| {
                 let here = cells.bordered(y * self.grid.width());
                 let states = &self.states[y * per_row * beams..(y + 1) * per_row * beams];
@@ -349,6 +349,20 @@ impl WithSimd for Likely<'_> {
     }
 }
 
+/// Cuts rows of view-points, by their y, in portions of at most so many that span at most so many
+/// rows of the grid: what is computed for the cells around a portion needs memory for all of them.
+fn portions<T>(rows: &[(usize, T)], most: usize, span: usize) -> Vec<&[(usize, T)]> {
+    let mut portions = Vec::new();
+    let mut rest = rows;
+    while let Some((first, _)) = rest.first() {
+        let near = rest.partition_point(|(y, _)| y - first < span);
+        let (portion, later) = rest.split_at(near.min(most));
+        portions.push(portion);
+        rest = later;
+    }
+    portions
+}
+
 /// The average over the beams.
 fn average(gains: &[Lanes]) -> [f64; LANES] {
     let mut sum = [0.0; LANES];
@@ -410,6 +424,15 @@ mod tests {
         let gains = (0..grid.len()).map(|index| cache.gain(index).to_bits()).collect();
         let reasons = (0..cache.groups.len()).map(|group| cache.reasons(group)).collect();
         (gains, cache.in_sight, reasons)
+    }
+
+    #[test]
+    fn rows_far_apart_are_not_evaluated_together() {
+        let rows = [0, 1, 2, 3, 40, 49, 50, 2000].map(|y| (y, ()));
+        let portions = portions(&rows, 3, 10);
+        let firsts: Vec<Vec<usize>> =
+            portions.iter().map(|portion| portion.iter().map(|(y, ())| *y).collect()).collect();
+        assert_eq!(firsts, [vec![0, 1, 2], vec![3], vec![40, 49], vec![50], vec![2000]]);
     }
 
     #[test]

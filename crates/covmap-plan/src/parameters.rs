@@ -101,6 +101,12 @@ pub enum PlannerError {
         "a beam covers {0} cells, 65535 are too many: use a coarser resolution, a shorter usable range or a narrower footprint"
     )]
     BeamTooFine(usize),
+    /// A beam reaches too far, in cells.
+    #[error(
+        "a beam reaches {0:.0} cells far, {most} are too many: use a coarser resolution or a shorter usable range",
+        most = crate::stencil::FARTHEST
+    )]
+    BeamTooLong(f64),
     /// The strategy has an impossible number.
     #[error("planner.strategy: {0}")]
     Strategy(#[from] StrategyError),

@@ -7,6 +7,7 @@ use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
 use crate::onlookers::Mark;
 use crate::passage::{nearest_passage, regions};
+use crate::stencil::FARTHEST;
 use crate::traversable::Traversable;
 use crate::view_points::ViewPoints;
 use crate::window::Window;
@@ -80,6 +81,10 @@ impl Planner {
         heading: f64,
     ) -> Result<Self, PlannerError> {
         parameters.validate()?;
+        let reach = model.max_reach() / model.resolution();
+        if reach > FARTHEST {
+            return Err(PlannerError::BeamTooLong(reach));
+        }
         let stencil = Stencil::new(model, heading);
         let most = stencil.beams.iter().map(|b| b.cells.len()).max().unwrap_or(0);
         if most >= usize::from(u16::MAX) {

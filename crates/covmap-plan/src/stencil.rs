@@ -44,12 +44,16 @@ pub struct Stencil {
     pub radius: i32,
 }
 
+/// A planner refuses beams of more cells than this from end to end: two hundred metres in cells of
+/// 0.1 m.
+pub(crate) const FARTHEST: f64 = 2000.0;
+
 /// Distances are rounded to multiples of this, 2⁻³⁶ m, so that beams that are rotations of
 /// each other by a quarter turn see the same distances, to the last bit.
 const DISTANCE_STEP: f64 = 1.0 / (1u64 << 36) as f64;
 
 impl Stencil {
-    /// The stencil of a model's ring at a heading \[rad\].
+    /// The stencil of a model's ring at a heading \[rad\]: its cells up to 2000 from the view-point.
     pub fn new(model: &SensorModel, heading: f64) -> Self {
         let r = model.resolution();
         let usable = model.parameters().usable_range;
@@ -84,7 +88,7 @@ fn beams_around(model: &SensorModel, heading: f64, ranges: &[f64]) -> Vec<BeamSt
     let r = model.resolution();
     // A grid with the view-point in the centre of its middle cell.
     #[allow(clippy::cast_possible_truncation, reason = "a sensor's reach is some hundred cells")]
-    let half = ((model.max_reach() + 10.0) / r).ceil().min(2000.0) as i32;
+    let half = ((model.max_reach() + 10.0) / r).ceil().min(1.1 * FARTHEST) as i32;
     let side = usize::try_from(2 * half + 1).unwrap_or(1);
     let corner = Point2::from(Vector2::repeat(-(f64::from(half) + 0.5) * r));
     let Ok(grid) = Grid::new(corner, r, side, side) else { return Vec::new() };

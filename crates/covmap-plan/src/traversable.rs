@@ -17,7 +17,7 @@ pub(crate) struct Traversable {
     /// Cells that block a view-point, relative to it.
     disc: Vec<(i32, i32)>,
     /// How many blocking cells are too near to each view-point.
-    blockers: Vec<u16>,
+    blockers: Vec<u32>,
     blocking: Vec<bool>,
     free: Vec<bool>,
     /// The body was over the centre of the cell.

@@ -7,7 +7,7 @@ use covmap_model::{
     integrate_body,
 };
 use covmap_plan::{
-    CellStatus, GAIN_TOLERANCE, Planner, PlannerParameters, Stencil, Strategy,
+    CellStatus, GAIN_TOLERANCE, Planner, PlannerError, PlannerParameters, Stencil, Strategy,
     expected_information_gain,
 };
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
@@ -309,4 +309,17 @@ fn a_passage_that_is_too_long_is_not_tried() {
         let (mut s, home) = cut_off(length);
         assert!(s.planner.choose(&s.map, home).is_none());
     }
+}
+
+#[test]
+fn beams_of_too_many_cells_are_refused() {
+    let planner = |r: f64| {
+        let ring = SonarRing::b21r();
+        let model = SensorModel::new(&ModelParameters::by_hand(), &ring, r).unwrap();
+        let outside = Raster::filled(Grid::new(Point2::origin(), r, 4, 4).unwrap(), false);
+        let parameters = PlannerParameters::standard();
+        Planner::new(&parameters, &model, &outside, RADIUS, 0.0).map(|_| ()).unwrap_err()
+    };
+    assert!(matches!(planner(0.001), PlannerError::BeamTooLong(cells) if cells > 3000.0));
+    assert!(matches!(planner(0.0035), PlannerError::BeamTooFine(cells) if cells > 65_534));
 }

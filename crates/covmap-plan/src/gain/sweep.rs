@@ -124,6 +124,11 @@ impl Sweep {
         }
     }
 
+    /// Around a row so many rows of cells matter.
+    pub(crate) fn border(&self) -> usize {
+        self.border
+    }
+
     /// Computes the gains of all units of some rows, in order of y.
     pub(crate) fn run(&self, arch: Arch, cells: &Cells, rows: &mut [Row]) {
         let Some((low, high)) = rows.first().zip(rows.last()).map(|(l, h)| (l.y, h.y)) else {
