@@ -1,6 +1,7 @@
 //! What each beam of each view-point sees and gains, kept until a scan changes it.
 
 use crate::cells::Cells;
+use crate::gain::bound::Potentials;
 use crate::gain::sweep::{Row, Sides, Sweep, Unit};
 use crate::look_ahead::{Ahead, Cone};
 use crate::onlookers::{Mark, Onlookers};
@@ -30,6 +31,8 @@ struct State {
     reason: u16,
     /// E\[I\] is.
     gain: u16,
+    /// E\[I\] or an upper bound of it is.
+    bound: u16,
     /// There is a reason to measure in sight.
     has_reason: u16,
     /// The values depend on the first so many cells of the beam.
@@ -43,6 +46,8 @@ struct Group {
     sight: u16,
     /// The gains of all beams are up to date.
     gain: u16,
+    /// The gains of all beams or upper bounds of them are.
+    bound: u16,
     /// There is a reason to measure in sight of some beam.
     has_reason: u16,
 }
@@ -56,9 +61,10 @@ pub(crate) struct BeamCache {
     grid: Grid,
     cones: Vec<Cone>,
     sweep: Sweep,
+    potentials: Potentials,
     onlookers: Onlookers,
     groups: Vec<Group>,
-    /// E\[I(l)\], by group.
+    /// E\[I(l)\] or an upper bound of it, by group.
     mean: Vec<[f64; LANES]>,
     /// For each group for each beam.
     states: Vec<State>,
@@ -84,6 +90,7 @@ impl BeamCache {
             grid,
             cones: stencil.beams.iter().map(cone).collect(),
             sweep: Sweep::new(model, stencil, grid),
+            potentials: Potentials::new(model, stencil, grid, cells),
             onlookers: Onlookers::new(stencil, grid),
             groups: vec![Group::default(); count],
             mean: vec![[0.0; LANES]; count],
@@ -103,8 +110,9 @@ impl BeamCache {
     pub(crate) fn forget_gain(&mut self, view_point: usize) {
         let (group, _) = place(self.grid.width(), view_point);
         let beams = self.cones.len();
-        self.groups[group].gain = 0;
-        self.states[group * beams..(group + 1) * beams].iter_mut().for_each(|s| s.gain = 0);
+        (self.groups[group].gain, self.groups[group].bound) = (0, 0);
+        let states = &mut self.states[group * beams..(group + 1) * beams];
+        states.iter_mut().for_each(|s| (s.gain, s.bound) = (0, 0));
     }
 
     fn take_marks(&mut self) {
@@ -116,10 +124,15 @@ impl BeamCache {
             }
             match mark {
                 Mark::Sight => {
-                    (state.sight, state.reason, state.gain) = (0, 0, 0);
-                    (groups[group].sight, groups[group].gain) = (0, 0);
+                    (state.sight, state.reason) = (0, 0);
+                    (state.gain, state.bound) = (0, 0);
+                    groups[group] =
+                        Group { has_reason: groups[group].has_reason, ..Group::default() };
                 }
-                Mark::Gain => (state.gain, groups[group].gain) = (0, 0),
+                Mark::Gain => {
+                    (state.gain, state.bound) = (0, 0);
+                    (groups[group].gain, groups[group].bound) = (0, 0);
+                }
                 Mark::Limit => (state.reason, groups[group].sight) = (0, 0),
             }
         });
@@ -155,6 +168,53 @@ impl BeamCache {
         });
     }
 
+    /// Brings upper bounds of E\[I(l)\] up to date where the gains are not, and V(l).
+    pub(crate) fn refresh_bound(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
+        for block in cells.take_changed() {
+            let (potentials, cells) = (&mut self.potentials, &*cells);
+            self.arch.dispatch(
+                #[inline(always)]
+                || potentials.update(cells, block),
+            );
+        }
+        self.refresh_sight(cells, wanted);
+        let (per_row, beams) = (groups(&self.grid), self.cones.len());
+        let rows = self
+            .groups
+            .par_chunks_mut(per_row)
+            .zip(self.states.par_chunks_mut(per_row * beams))
+            .zip(self.gain.par_chunks_mut(per_row * beams))
+            .zip(self.mean.par_chunks_mut(per_row))
+            .zip(wanted.groups().par_chunks(per_row))
+            .enumerate()
+            .with_min_len(ROWS);
+        let (grid, cones, arch, potentials) =
+            (&self.grid, &self.cones, self.arch, &self.potentials);
+        rows.for_each_init(Ahead::new, |ahead, (y, ((((groups, states), gain), mean), wanted))| {
+            if groups.iter().zip(wanted).any(|(group, wanted)| wanted & !group.bound != 0) {
+                let here = cells.bordered(y * grid.width());
+                arch.dispatch(Bounds {
+                    cones,
+                    cells,
+                    potentials,
+                    here,
+                    wanted,
+                    groups,
+                    states,
+                    gain,
+                    mean,
+                    ahead,
+                });
+            }
+        });
+    }
+
+    /// Whether E\[I(l)\] of a view-point is up to date, not only a bound of it.
+    pub(crate) fn is_exact(&self, view_point: usize) -> bool {
+        let (group, lane) = place(self.grid.width(), view_point);
+        self.groups[group].gain >> lane & 1 == 1
+    }
+
     /// Brings E\[I(l)\] up to date, and V(l).
     pub(crate) fn refresh_gain(&mut self, cells: &Cells, wanted: &ViewPoints) {
         self.refresh_sight(cells, wanted);
@@ -187,9 +247,13 @@ impl BeamCache {
                 for (unit, gains) in row.units.iter().zip(row.gains) {
                     let group = row.y * per_row + unit.group;
                     let at = group * beams + unit.beam;
-                    #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for its size")]
-                    (self.gain[at] = gains.map(|gain| gain as f32));
-                    self.states[at].gain |= wanted.groups()[group];
+                    let wanted = wanted.groups()[group];
+                    for lane in (0..LANES).filter(|lane| wanted >> lane & 1 == 1) {
+                        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for size")]
+                        (self.gain[at][lane] = gains[lane] as f32);
+                    }
+                    let state = &mut self.states[at];
+                    (state.gain, state.bound) = (state.gain | wanted, state.bound | wanted);
                 }
             }
         }
@@ -204,7 +268,7 @@ impl BeamCache {
         averages.for_each(|((((mean, group), gains), states), wanted)| {
             if wanted & !group.gain != 0 {
                 *mean = average(gains);
-                group.gain = states.iter().fold(u16::MAX, |all, state| all & state.gain);
+                (group.gain, group.bound) = up_to_date(states);
             }
         });
     }
@@ -220,7 +284,7 @@ impl BeamCache {
         self.reasons(group) >> lane & 1 == 1
     }
 
-    /// E\[I(l)\] of a view-point that is up to date \[nats\].
+    /// E\[I(l)\] of a view-point that is up to date, or an upper bound \[nats\].
     pub(crate) fn gain(&self, view_point: usize) -> f64 {
         let (group, lane) = place(self.grid.width(), view_point);
         self.mean[group][lane]
@@ -363,6 +427,59 @@ fn portions<T>(rows: &[(usize, T)], most: usize, span: usize) -> Vec<&[(usize, T
     portions
 }
 
+/// Bounds the gains of the beams of a row that are stale.
+struct Bounds<'a> {
+    cones: &'a [Cone],
+    cells: &'a Cells,
+    potentials: &'a Potentials,
+    here: usize,
+    wanted: &'a [u16],
+    groups: &'a mut [Group],
+    states: &'a mut [State],
+    gain: &'a mut [Lanes],
+    mean: &'a mut [[f64; LANES]],
+    ahead: &'a mut Ahead,
+}
+
+impl WithSimd for Bounds<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { cones, cells, potentials, here, wanted, groups, states, gain, mean, ahead } =
+            self;
+        let beams = cones.len();
+        let stale = |i: &usize| wanted[*i] & !groups[*i].bound != 0;
+        let all: Vec<usize> = (0..wanted.len()).filter(stale).collect();
+        for (beam, cone) in cones.iter().enumerate() {
+            for &i in &all {
+                let (state, gain) = (&mut states[i * beams + beam], &mut gain[i * beams + beam]);
+                if wanted[i] & !state.bound == 0 {
+                    continue;
+                }
+                let here = here + i * LANES;
+                cone.look(cells, here, ahead);
+                let bound = potentials.bound(cone, here, ahead);
+                for lane in 0..LANES {
+                    let exact = state.gain >> lane & 1 == 1;
+                    gain[lane] = if exact { gain[lane] } else { bound[lane] };
+                }
+                state.bound |= wanted[i];
+            }
+        }
+        for i in all {
+            mean[i] = average(&gain[i * beams..(i + 1) * beams]);
+            (groups[i].gain, groups[i].bound) = up_to_date(&states[i * beams..(i + 1) * beams]);
+        }
+    }
+}
+
+/// For which view-points the gains of all beams are up to date, and the bounds.
+fn up_to_date(states: &[State]) -> (u16, u16) {
+    let both = |(gain, bound), state: &State| (gain & state.gain, bound & state.bound);
+    states.iter().fold((u16::MAX, u16::MAX), both)
+}
+
 /// The average over the beams.
 fn average(gains: &[Lanes]) -> [f64; LANES] {
     let mut sum = [0.0; LANES];
@@ -424,6 +541,43 @@ mod tests {
         let gains = (0..grid.len()).map(|index| cache.gain(index).to_bits()).collect();
         let reasons = (0..cache.groups.len()).map(|group| cache.reasons(group)).collect();
         (gains, cache.in_sight, reasons)
+    }
+
+    #[test]
+    fn no_gain_exceeds_its_bound() {
+        let parameters = PlannerParameters::standard();
+        for model in [ModelParameters::b21r(), ModelParameters::by_hand()] {
+            let model = SensorModel::new(&model, &SonarRing::b21r(), 0.1).unwrap();
+            let grid = Grid::new(Point2::new(-2.0, -2.0), 0.1, 43, 37).unwrap();
+            let stencil = Stencil::new(&model, 0.1);
+            let mut map = CoverageMap::new(grid, 11).unwrap();
+            let mut cells = Cells::new(grid, 11, &stencil, &parameters);
+            let mut cache = BeamCache::new(&model, &stencil, &cells, grid, &parameters);
+            let mut wanted = ViewPoints::new(&grid);
+            (0..grid.len()).for_each(|index| wanted.insert(index));
+            let (mut loose, mut all) = (0.0, 0.0);
+            for turn in 0..12u32 {
+                let pose = Isometry2::new(Vector2::new(0.1 * f64::from(turn), 0.0), 0.1);
+                let range = |i: u32| Range::Echo(0.5 + 0.07 * f64::from((i * 7 + turn) % 24));
+                let scan = Scan { pose, time: 0.0, ranges: (0..24).map(range).collect() };
+                for change in integrate(&model, &mut map, &scan) {
+                    cells.update(&map, change.cell);
+                    cache.mark(grid.index(change.cell).unwrap(), Mark::Sight);
+                }
+                cache.refresh_bound(&mut cells, &wanted);
+                let bounds: Vec<f64> = (0..grid.len()).map(|index| cache.gain(index)).collect();
+                let bounded = |index: &usize| !cache.is_exact(*index);
+                let bounded: Vec<usize> = (0..grid.len()).filter(bounded).collect();
+                assert!(!bounded.is_empty());
+                cache.refresh_gain(&cells, &wanted);
+                for index in bounded {
+                    assert!(cache.is_exact(index) && cache.gain(index) <= bounds[index]);
+                    loose += bounds[index] - cache.gain(index);
+                    all += cache.gain(index).max(0.0);
+                }
+            }
+            assert!(loose < all, "bounds are some {} times as large", 1.0 + loose / all);
+        }
     }
 
     #[test]

@@ -28,6 +28,9 @@ pub(crate) struct Cells {
     /// measurement can change, else 0.
     entropies: Vec<Lanes>,
     changeable: Vec<Lanes>,
+    /// The blocks with changes since they were last asked for.
+    changed: Vec<usize>,
+    is_changed: Vec<bool>,
     /// For every block h, and ĥ of [`Prior`], of every bin.
     h: Vec<Lanes>,
     tilt: Vec<Lanes>,
@@ -65,6 +68,8 @@ impl Cells {
             reflections: vec![0.0; bordered],
             entropies: vec![none; blocks],
             changeable: vec![none; blocks],
+            changed: Vec::new(),
+            is_changed: vec![false; blocks],
             // Past the last cell of a row any histogram will do, if its numbers are tame.
             h: vec![[1.0; LANES]; blocks * bins],
             tilt: vec![none; blocks * bins],
@@ -92,6 +97,9 @@ impl Cells {
         let posterior = &mut posterior[..self.bins];
         map.read_posterior(cell, posterior);
         let (block, lane) = self.block_of(index);
+        if !std::mem::replace(&mut self.is_changed[block], true) {
+            self.changed.push(block);
+        }
         let rows = block * self.bins..(block + 1) * self.bins;
         let entropy = -posterior.iter().map(|p| p * libm::log(*p)).sum::<f64>();
         let (h, tilt) = (&mut self.h[rows.clone()], &mut self.tilt[rows]);
@@ -115,6 +123,12 @@ impl Cells {
         #[allow(clippy::cast_possible_truncation, reason = "at most 67 codes")]
         let old = std::mem::replace(&mut self.codes[bordered], code as u8);
         usize::from(old) != code
+    }
+
+    /// The blocks with changes since this was last asked.
+    pub(crate) fn take_changed(&mut self) -> Vec<usize> {
+        self.changed.iter().for_each(|block| self.is_changed[*block] = false);
+        std::mem::take(&mut self.changed)
     }
 
     /// ρ of all cells, bordered.

@@ -37,7 +37,8 @@ pub struct Decision {
     pub passage: Vec<Cell>,
     /// The number of candidates, |L(c)|.
     pub candidates: usize,
-    /// How many of them have E\[I\] < 0.
+    /// How many of them have E\[I\] < 0, of those that were evaluated: of most candidates an upper
+    /// bound tells that others are better.
     pub negative_gains: usize,
     /// How many were so close to the best that the literal equations decided between them.
     pub decided_by_oracle: usize,

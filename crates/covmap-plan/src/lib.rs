@@ -21,6 +21,7 @@
 mod beam_cache;
 mod cells;
 mod certificate;
+mod deciding;
 mod decision;
 mod exploration;
 mod gain;

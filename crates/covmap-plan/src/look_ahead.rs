@@ -8,7 +8,7 @@ use crate::cells::Cells;
 use covmap::lanes::{LANES, Lanes};
 
 /// [`LANES`] probabilities.
-type Wide = [f64; LANES];
+pub(crate) type Wide = [f64; LANES];
 
 /// Outcomes less likely than this are left out of E\[I\]: of some hundred outcomes, all of them
 /// together are less than a hundredth of what a decision tolerates.
@@ -39,6 +39,16 @@ pub(crate) struct Ahead {
 impl Ahead {
     pub(crate) fn new() -> Self {
         Self { echoes: Vec::new(), no_echo: (0, [0.0; LANES]), traced: [0.0; LANES] }
+    }
+
+    /// k and P(k) of the possible echoes, in order.
+    pub(crate) fn echoes(&self) -> &[(usize, Wide)] {
+        &self.echoes
+    }
+
+    /// The probability of no echo.
+    pub(crate) fn no_echo(&self) -> &Wide {
+        &self.no_echo.1
     }
 
     /// The outcomes that matter to one of some view-points, with their probabilities: 0 for
@@ -74,6 +84,15 @@ impl Cone {
             distances,
             uniform_share,
         }
+    }
+
+    pub(crate) fn beam(&self) -> &BeamStencil {
+        &self.beam
+    }
+
+    /// Where the beam's cells lie from a view-point in the bordered rasters.
+    pub(crate) fn offsets(&self) -> &[isize] {
+        &self.offsets
     }
 
     /// The likelihood of every outcome. `here` is the first view-point's place in the bordered
@@ -229,7 +248,7 @@ fn as_f64(count: usize) -> f64 {
 
 /// The values of a bordered raster at an offset from neighbouring view-points.
 #[inline(always)]
-fn lanes<T>(raster: &[T], here: usize, offset: isize) -> &[T; LANES] {
+pub(crate) fn lanes<T>(raster: &[T], here: usize, offset: isize) -> &[T; LANES] {
     let at = here.wrapping_add_signed(offset);
     let Some(lanes) = raster[at..].first_chunk() else { panic!("rasters have a border") };
     lanes

@@ -46,7 +46,7 @@ pub struct Planner {
     stencil: Stencil,
     pub(crate) grid: Grid,
     radius: f64,
-    cells: Cells,
+    pub(crate) cells: Cells,
     pub(crate) traversable: Traversable,
     pub(crate) exploration: Exploration,
     pub(crate) beams: BeamCache,
@@ -304,17 +304,21 @@ impl Planner {
         candidates.indices.iter().map(record).collect()
     }
 
+    pub(crate) fn view_points(&self, records: &[CandidateRecord]) -> ViewPoints {
+        let mut set = ViewPoints::new(&self.grid);
+        let indices = records.iter().filter_map(|r| self.grid.index(r.cell));
+        indices.for_each(|index| set.insert(index));
+        set
+    }
+
     /// Fills in the gains of all records. A strategy without gains does not keep them up to
     /// date, so they are forgotten first.
     fn fill_gains(&mut self, records: &mut [CandidateRecord]) {
-        let mut wanted = ViewPoints::new(&self.grid);
-        let indices = records.iter().filter_map(|r| self.grid.index(r.cell));
-        for index in indices {
-            if !self.parameters.strategy.uses_gain() {
-                self.beams.forget_gain(index);
-            }
-            wanted.insert(index);
+        if !self.parameters.strategy.uses_gain() {
+            let indices = records.iter().filter_map(|r| self.grid.index(r.cell));
+            indices.for_each(|index| self.beams.forget_gain(index));
         }
+        let wanted = self.view_points(records);
         self.beams.refresh_gain(&self.cells, &wanted);
         for record in records {
             record.gain = self.grid.index(record.cell).map_or(0.0, |index| self.beams.gain(index));
@@ -334,7 +338,7 @@ impl Planner {
         records
     }
 
-    fn score(&self) -> Score {
+    pub(crate) fn score(&self) -> Score {
         match self.parameters.strategy {
             Strategy::Cl | Strategy::Count { .. } => Score::Closest,
             Strategy::Ig | Strategy::IgWin { .. } => Score::Gain,
@@ -356,7 +360,7 @@ impl Planner {
         let with_gain = self.parameters.strategy.uses_gain();
         let mut records = self.records(&candidates);
         if with_gain {
-            self.fill_gains(&mut records);
+            self.fill_deciding_gains(&mut records);
         }
         self.score().apply(&mut records);
         let decided_by_oracle = if with_gain { self.decide_ties(map, &mut records) } else { 0 };

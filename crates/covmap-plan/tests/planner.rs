@@ -120,6 +120,20 @@ fn strategies() -> impl Generator<Value = Strategy> {
     ])
 }
 
+/// Compares the five best of a decision, which evaluates what may be among them, with those of all
+/// candidates.
+fn check_decision(s: &mut Setting, from: Cell) -> Result<(), TestCaseError> {
+    let decision = s.planner.clone().choose(&s.map, from);
+    let mut table = s.planner.candidate_table(from);
+    prop_assert_eq!(decision.is_none(), table.is_empty());
+    let largest = table.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
+    table.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell)));
+    for (ours, one) in decision.iter().flat_map(|d| &d.best).zip(&table) {
+        prop_assert!((ours.score - one.score).abs() <= 2.0 * GAIN_TOLERANCE * largest);
+    }
+    Ok(())
+}
+
 /// Compares every seventh candidate's gain with the literal equations.
 fn check_gains(s: &mut Setting, stencil: &Stencil, from: Cell) -> Result<(), TestCaseError> {
     let table = s.planner.candidate_table(from);
@@ -148,6 +162,7 @@ fn check_gains_after_every_scan(
     let home = s.map.grid().cell_at(Point2::origin()).unwrap();
     for (x, y, ranges) in scans {
         s.scan(x, y, &ranges);
+        check_decision(&mut s, home)?;
         check_gains(&mut s, &stencil, home)?;
     }
     Ok(())

@@ -7,13 +7,14 @@
 
 use super::evidence::Evidence;
 use covmap::bin_coverage;
+use covmap_model::{Outcome, SensorModel};
 use std::f64::consts::PI;
 
 /// An interpolated gain of a cell may be off by this, in units of the largest gain of its
-/// histogram and of one that matters in a decision: four times what a decision tolerates, for the
-/// worst of histograms. Errors of many cells cancel: E\[I\] is off by some hundredth of it, and
-/// with five times as much random models were found for which it is off by too much.
-const TOLERANCE: f64 = 4e-5;
+/// histogram and of one that matters in a decision: what a decision tolerates, for the worst of
+/// histograms. Errors of many cells cancel: E\[I\] is off by some hundredth of it, but with four
+/// times as much random models were found for which it is off by more than a decision tolerates.
+const TOLERANCE: f64 = 1e-5;
 /// A gain that matters in a decision is so much of the largest that a reading can give.
 const SHARE: f64 = 0.1;
 
@@ -97,9 +98,15 @@ pub(crate) struct Probes {
 }
 
 impl Probes {
+    /// Those of a model, whose strongest evidence is that of a cell near to the sensor.
+    pub(crate) fn of_model(model: &SensorModel) -> Self {
+        let near = 2.0 * model.resolution();
+        Self::new(&Evidence::new(model, near, Outcome::Echo(2.0 * near)))
+    }
+
     /// The uniform one, and narrow and wide ones around many coverages, alone and in pairs.
     /// `strongest` is the evidence that tells most.
-    pub(crate) fn new(strongest: &Evidence) -> Self {
+    fn new(strongest: &Evidence) -> Self {
         let bins = strongest.bins();
         let mut probes = vec![vec![1.0; bins]];
         for center in [0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0] {
@@ -127,6 +134,17 @@ impl Probes {
         let gains = found.largest_gains(&[found.after(strongest)]);
         found.scale = SHARE * gains.into_iter().fold(0.0, f64::max);
         found
+    }
+
+    /// A gain that matters in a decision \[nats\].
+    pub(crate) fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// The gain of every probe by a reading, Eq. (13) \[nats\].
+    pub(crate) fn gains(&self, evidence: &Evidence) -> Vec<f64> {
+        let before = self.probes.iter().map(|(_, u)| -u.iter().sum::<f64>());
+        before.zip(self.after(evidence)).map(|(before, after)| before - after).collect()
     }
 
     /// The entropy of every probe after a reading \[nats\].

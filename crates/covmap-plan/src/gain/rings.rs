@@ -66,8 +66,7 @@ pub(crate) enum Shares {
 
 /// All rings, nearest first.
 pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> Vec<Ring> {
-    let near = 2.0 * model.resolution();
-    let probes = Probes::new(&Evidence::new(model, near, Outcome::Echo(2.0 * near)));
+    let probes = Probes::of_model(model);
     let count = (0..).find(|ring| {
         stencil
             .beams

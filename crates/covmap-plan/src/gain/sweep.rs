@@ -267,8 +267,12 @@ impl WithSimd for Fill<'_> {
         for (x, asked) in asked.iter().enumerate().filter(|(_, asked)| **asked != 0) {
             let prior = cells.block(y * groups(&sweep.grid) + x);
             let column = sweep.border + x * LANES;
-            for (i, reading) in ring.readings.iter().enumerate() {
-                if asked & bit(i) != 0 {
+            // Bit by bit: to ask reading by reading, a processor would guess wrong too often.
+            let mut left = *asked;
+            while left != 0 {
+                let first = left.trailing_zeros() as usize;
+                left &= left - 1;
+                for (i, reading) in ring.readings.iter().enumerate().skip(first).step_by(64) {
                     let at = i * sweep.stride + column;
                     planes[at..at + LANES].copy_from_slice(&prior.gain(reading));
                 }

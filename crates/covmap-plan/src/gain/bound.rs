@@ -1,0 +1,246 @@
+//! Upper bounds of E\[I\]: what a decision need not evaluate.
+//!
+//! Imagined readings are put into families: in front of the end, by the band of distance of the
+//! cell and that of the end; at the end and behind it, by that of the end; and no echo. For each
+//! family every cell keeps its *potential*: a gain that no reading of the family exceeds. The
+//! bound of a beam is Eq. (14) with potentials in place of gains, and has a tenth of its terms.
+//!
+//! A potential is the largest gain of a few members of the family, with a margin. Members and
+//! margin are found when the tables are built, on histograms of all kinds, as the nodes of an
+//! interpolation are ([`Probes`]).
+
+use super::evidence::{Evidence, Reading};
+use super::interpolation::Probes;
+use crate::Stencil;
+use crate::cells::Cells;
+use crate::look_ahead::{Ahead, Cone, lanes};
+use covmap::Grid;
+use covmap::lanes::{LANES, Lanes};
+use covmap_model::{Outcome, SensorModel};
+
+/// Distances up to the usable range are put into so many bands.
+const BANDS: usize = 4;
+/// No member of a family gains more than this times the largest of those that are evaluated …
+const MARGIN: f64 = 1.15;
+/// … and no histogram more than that and a little; for histograms other than those that were
+/// looked at.
+const CAUTION: f64 = 1.02;
+/// A potential may be too large by this, in units of a gain that matters.
+const SLACK: f64 = 2e-3;
+
+/// Readings that have one potential.
+#[derive(Debug, Clone)]
+struct Family {
+    readings: Vec<Reading>,
+    margin: f32,
+    slack: f32,
+}
+
+/// The potentials of all cells.
+#[derive(Debug, Clone)]
+pub(crate) struct Potentials {
+    grid: Grid,
+    /// Front, by bands of cell and end; near, by band of the end; no echo.
+    families: Vec<Family>,
+    /// The band of every range.
+    bands: Vec<usize>,
+    /// For each family the cells, with a border as in [`Cells`].
+    rasters: Vec<Vec<f32>>,
+}
+
+/// The place of a family.
+fn front(cell: usize, end: usize) -> usize {
+    cell * BANDS + end
+}
+fn near(end: usize) -> usize {
+    BANDS * BANDS + end
+}
+const NO_ECHO: usize = BANDS * BANDS + BANDS;
+
+impl Potentials {
+    pub(crate) fn new(model: &SensorModel, stencil: &Stencil, grid: Grid, cells: &Cells) -> Self {
+        let ranges = &stencil.ranges;
+        let band = |k: usize| (k * BANDS / ranges.len()).min(BANDS - 1);
+        let bands: Vec<usize> = (0..ranges.len()).map(band).collect();
+        let probes = Probes::of_model(model);
+        let families = families(model, ranges, &bands);
+        let families: Vec<Family> =
+            families.into_iter().map(|members| Family::new(members, &probes)).collect();
+        let raster = |family: &Family| {
+            let cells = if family.readings.is_empty() { 0 } else { cells.limits().len() };
+            vec![0.0; cells]
+        };
+        let rasters = families.iter().map(raster).collect();
+        Self { grid, families, bands, rasters }
+    }
+
+    /// Computes the potentials of a block of cells anew.
+    #[inline(always)]
+    pub(crate) fn update(&mut self, cells: &Cells, block: usize) {
+        let per_row = crate::view_points::groups(&self.grid);
+        let (x, y) = (block % per_row * LANES, block / per_row);
+        let count = LANES.min(self.grid.width() - x);
+        let at = cells.bordered(y * self.grid.width() + x);
+        let prior = cells.block(block);
+        for (family, raster) in self.families.iter().zip(&mut self.rasters) {
+            if family.readings.is_empty() {
+                continue;
+            }
+            let mut potential = [0.0; LANES];
+            for reading in &family.readings {
+                let gain = prior.gain(reading);
+                for (potential, gain) in potential.iter_mut().zip(gain) {
+                    *potential = if gain > *potential { gain } else { *potential };
+                }
+            }
+            for (potential, changeable) in potential.iter_mut().zip(prior.changeable) {
+                *potential = changeable * (*potential * family.margin + family.slack);
+            }
+            raster[at..at + count].copy_from_slice(&potential[..count]);
+        }
+    }
+
+    /// An upper bound of a beam's part of E\[I\] from neighbouring view-points.
+    #[inline(always)]
+    pub(crate) fn bound(&self, cone: &Cone, here: usize, ahead: &Ahead) -> Lanes {
+        let mut bound = [0.0; LANES];
+        let beam = cone.beam();
+        // What ends beyond the present ring, by band.
+        let mut beyond = [[0.0; LANES]; BANDS];
+        let mut is_beyond = [false; BANDS];
+        let mut echoes = ahead.echoes().iter().rev().peekable();
+        let farthest = ahead.echoes().last().map_or(0, |(k, _)| *k);
+        for ring in (0..farthest).rev() {
+            while let Some((k, p)) = echoes.next_if(|(k, _)| *k > ring) {
+                is_beyond[self.bands[*k]] = true;
+                add(&mut beyond[self.bands[*k]], p);
+            }
+            let cells = beam.rings[ring].start..beam.rings[ring + 1].start;
+            for band in (0..BANDS).filter(|band| is_beyond[*band]) {
+                let raster = &self.rasters[front(self.bands[ring], band)];
+                let sum = sum(raster, cone, cells.clone(), here);
+                add_product(&mut bound, &beyond[band], &sum);
+            }
+        }
+        for (k, p) in ahead.echoes() {
+            let cells = beam.rings[*k].start..beam.echo_reach[*k].max(beam.rings[*k].start);
+            let mut share = [0.0; LANES];
+            add(&mut share, p);
+            let sum = sum(&self.rasters[near(self.bands[*k])], cone, cells, here);
+            add_product(&mut bound, &share, &sum);
+        }
+        if beam.no_echo_reach > 0 {
+            let mut share = [0.0; LANES];
+            add(&mut share, ahead.no_echo());
+            let sum = sum(&self.rasters[NO_ECHO], cone, 0..beam.no_echo_reach, here);
+            add_product(&mut bound, &share, &sum);
+        }
+        bound
+    }
+}
+
+impl Family {
+    /// As few of the members as the margin allows: one after the other the one that exceeds the
+    /// potential by most.
+    fn new(members: Vec<Evidence>, probes: &Probes) -> Self {
+        let gains: Vec<Vec<f64>> = members.iter().map(|member| probes.gains(member)).collect();
+        let slack = SLACK * probes.scale();
+        let count = gains.first().map_or(0, Vec::len);
+        let mut largest = vec![0.0f64; count];
+        let mut readings = Vec::new();
+        loop {
+            // How many times as large as allowed the gain of a member is, for the worst probe.
+            let excess = |gains: &Vec<f64>| {
+                let one =
+                    |(gain, largest): (&f64, &f64)| (gain - slack) / (MARGIN * largest).max(1e-12);
+                gains.iter().zip(&largest).map(one).fold(0.0, f64::max)
+            };
+            let worst = gains.iter().map(excess).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+            let Some((member, _)) = worst.filter(|(_, excess)| *excess > 1.0) else { break };
+            readings.push(members[member].reading());
+            largest.iter_mut().zip(&gains[member]).for_each(|(l, gain)| *l = l.max(*gain));
+        }
+        if readings.is_empty() {
+            readings.extend(members.first().map(Evidence::reading));
+        }
+        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
+        let (margin, slack) = ((MARGIN * CAUTION) as f32, (CAUTION * slack) as f32);
+        Self { readings, margin, slack }
+    }
+}
+
+/// Members of all families, near enough to each other to stand for those between them.
+fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> Vec<Vec<Evidence>> {
+    let (half, behind) = (0.5 * model.resolution(), model.parameters().behind);
+    // Shifted by a quarter of its width, a Gaussian gains about the same.
+    #[allow(clippy::cast_possible_truncation, reason = "below 65")]
+    let shifts = (2.0 / model.parameters().sigma_in).ceil().clamp(8.0, 64.0) as i32;
+    let mut families = vec![Vec::new(); NO_ECHO + 1];
+    let echo = |distance: f64, k: usize| Evidence::new(model, distance, Outcome::Echo(ranges[k]));
+    // In a band, its first, last and middle ring.
+    let band = |band: usize| {
+        let rings: Vec<usize> = (0..ranges.len()).filter(|k| bands[*k] == band).collect();
+        let (first, last) = (rings.first().copied(), rings.last().copied());
+        let middle = rings.get(rings.len() / 2).copied();
+        let mut some: Vec<usize> = [first, middle, last].into_iter().flatten().collect();
+        some.dedup();
+        some
+    };
+    for end in 0..BANDS {
+        for cell in 0..=end {
+            for k in band(end) {
+                for ring in band(cell) {
+                    // Just below the border of what ends there.
+                    for side in [-1.0, 0.0, 1.0 - 1e-6] {
+                        let distance = ranges[ring] + half * side;
+                        let is_front = distance >= 0.0 && distance < ranges[k] - half;
+                        families[front(cell, end)].extend(is_front.then(|| echo(distance, k)));
+                    }
+                }
+            }
+        }
+        for k in band(end) {
+            for step in -shifts..=shifts {
+                let distance = ranges[k] + half * f64::from(step) / f64::from(shifts);
+                families[near(end)].extend((distance >= 0.0).then(|| echo(distance, k)));
+            }
+            for step in 1..=4 {
+                let distance = ranges[k] + half + behind * f64::from(step) / 4.0;
+                families[near(end)].push(echo(distance, k));
+            }
+        }
+    }
+    for step in 0..=8 {
+        let distance = model.reach(Outcome::NoEcho) * f64::from(step) / 8.0;
+        families[NO_ECHO].push(Evidence::new(model, distance, Outcome::NoEcho));
+    }
+    families
+}
+
+/// Σ of the potentials of some of a beam's cells.
+#[inline(always)]
+fn sum(raster: &[f32], cone: &Cone, cells: std::ops::Range<usize>, here: usize) -> Lanes {
+    let mut sum = [0.0; LANES];
+    for offset in &cone.offsets()[cells] {
+        let potential: &Lanes = lanes(raster, here, *offset);
+        for lane in 0..LANES {
+            sum[lane] += potential[lane];
+        }
+    }
+    sum
+}
+
+#[inline(always)]
+fn add(sum: &mut Lanes, probabilities: &[f64; LANES]) {
+    for lane in 0..LANES {
+        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
+        (sum[lane] += probabilities[lane] as f32);
+    }
+}
+
+#[inline(always)]
+fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
+    for lane in 0..LANES {
+        sum[lane] += a[lane] * b[lane];
+    }
+}
