@@ -13,9 +13,9 @@ use covmap_model::{Registers, SensorModel};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
-/// So many beams of groups are evaluated at once, at most: bounds the memory of what is likely from
-/// each.
-const PORTION: usize = 1 << 17;
+/// So many outcomes of beams of groups are looked at together, at most, if all are likely: bounds
+/// the memory of their probabilities, 64 bytes each.
+const PORTION: usize = 1 << 22;
 
 /// So many rows of groups, or groups, are worked at by one thread at least: to wake another one
 /// up takes longer than to look through them.
@@ -61,7 +61,8 @@ pub(crate) struct BeamCache {
     grid: Grid,
     cones: Vec<Cone>,
     sweep: Sweep,
-    potentials: Potentials,
+    /// Only for strategies that weigh gains.
+    potentials: Option<Potentials>,
     onlookers: Onlookers,
     groups: Vec<Group>,
     /// E\[I(l)\] or an upper bound of it, by group.
@@ -70,6 +71,7 @@ pub(crate) struct BeamCache {
     states: Vec<State>,
     /// How many cells of the beam are in sight: V(l) beam by beam.
     in_sight: Vec<[u16; LANES]>,
+    /// E\[I\] of each, or an upper bound of it.
     gain: Vec<Lanes>,
     /// Which vector registers are used; all give the same bits.
     arch: Arch,
@@ -90,7 +92,10 @@ impl BeamCache {
             grid,
             cones: stencil.beams.iter().map(cone).collect(),
             sweep: Sweep::new(model, stencil, grid),
-            potentials: Potentials::new(model, stencil, grid, cells),
+            potentials: parameters
+                .strategy
+                .uses_gain()
+                .then(|| Potentials::new(model, stencil, grid, cells)),
             onlookers: Onlookers::new(stencil, grid),
             groups: vec![Group::default(); count],
             mean: vec![[0.0; LANES]; count],
@@ -170,14 +175,18 @@ impl BeamCache {
 
     /// Brings upper bounds of E\[I(l)\] up to date where the gains are not, and V(l).
     pub(crate) fn refresh_bound(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
+        let Some(potentials) = &mut self.potentials else {
+            return self.refresh_gain(cells, wanted);
+        };
         for block in cells.take_changed() {
-            let (potentials, cells) = (&mut self.potentials, &*cells);
+            let (potentials, cells) = (&mut *potentials, &*cells);
             self.arch.dispatch(
                 #[inline(always)]
                 || potentials.update(cells, block),
             );
         }
         self.refresh_sight(cells, wanted);
+        let Some(potentials) = &self.potentials else { return };
         let (per_row, beams) = (groups(&self.grid), self.cones.len());
         let rows = self
             .groups
@@ -188,8 +197,7 @@ impl BeamCache {
             .zip(wanted.groups().par_chunks(per_row))
             .enumerate()
             .with_min_len(ROWS);
-        let (grid, cones, arch, potentials) =
-            (&self.grid, &self.cones, self.arch, &self.potentials);
+        let (grid, cones, arch) = (&self.grid, &self.cones, self.arch);
         rows.for_each_init(Ahead::new, |ahead, (y, ((((groups, states), gain), mean), wanted))| {
             if groups.iter().zip(wanted).any(|(group, wanted)| wanted & !group.bound != 0) {
                 let here = cells.bordered(y * grid.width());
@@ -225,7 +233,8 @@ impl BeamCache {
         };
         let rows: Vec<(usize, &[u16])> =
             wanted.groups().chunks(per_row).enumerate().filter(|row| stale(*row)).collect();
-        let at_once = (PORTION / (per_row * beams)).max(1);
+        let outcomes = self.cones.first().map_or(1, Cone::outcomes);
+        let at_once = (PORTION / (per_row * beams * outcomes)).max(1);
         for rows in portions(&rows, at_once, at_once.max(self.sweep.border())) {
             let look = |ahead: &mut Ahead, (y, wanted): &(usize, &[u16])| {
                 let here = cells.bordered(y * self.grid.width());
@@ -248,11 +257,18 @@ impl BeamCache {
                     let group = row.y * per_row + unit.group;
                     let at = group * beams + unit.beam;
                     let wanted = wanted.groups()[group];
+                    let state = &mut self.states[at];
+                    let bounded = state.bound & !state.gain;
                     for lane in (0..LANES).filter(|lane| wanted >> lane & 1 == 1) {
                         #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for size")]
-                        (self.gain[at][lane] = gains[lane] as f32);
+                        let (gain, kept) = (gains[lane] as f32, &mut self.gain[at][lane]);
+                        let is_bounded = bounded >> lane & 1 == 1;
+                        debug_assert!(
+                            !is_bounded || gain <= *kept + 1e-5 * (1.0 + kept.abs()),
+                            "{gain} is above its bound {kept}"
+                        );
+                        *kept = gain;
                     }
-                    let state = &mut self.states[at];
                     (state.gain, state.bound) = (state.gain | wanted, state.bound | wanted);
                 }
             }
@@ -397,7 +413,7 @@ impl WithSimd for Likely<'_> {
                 }
                 cone.look(cells, here + group * LANES, ahead);
                 let first = row.outcomes.len();
-                ahead.likely(wanted | known, |k, p| {
+                ahead.likely(*wanted, |k, p| {
                     row.outcomes.push(k);
                     row.probabilities.push(p);
                 });

@@ -1,6 +1,6 @@
 //! Which gains decide: all candidates are bounded, and those evaluated that may be the best.
 
-use crate::decision::REPORTED;
+use crate::decision::{REPORTED, Score};
 use crate::view_points::ViewPoints;
 use crate::{CandidateRecord, GAIN_TOLERANCE, Planner};
 
@@ -18,9 +18,11 @@ impl Planner {
         let largest = |records: &[CandidateRecord]| {
             GAIN_TOLERANCE * records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max)
         };
-        // Eq. (16) divides by the largest gain: this one first.
-        self.settle(records, &all, 1, |record| record.gain, largest);
         let score = self.score();
+        if let Score::Weighted(_) = score {
+            // Eq. (16) divides by the largest gain: this one first.
+            self.settle(records, &all, 1, |record| record.gain, largest);
+        }
         let off = |records: &[CandidateRecord]| score.uncertainty(records, GAIN_TOLERANCE);
         self.settle(records, &all, REPORTED, |record| record.score, off);
     }

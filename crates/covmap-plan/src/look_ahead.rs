@@ -86,6 +86,11 @@ impl Cone {
         }
     }
 
+    /// How many outcomes there are.
+    pub(crate) fn outcomes(&self) -> usize {
+        self.beam.rings.len() + 1
+    }
+
     pub(crate) fn beam(&self) -> &BeamStencil {
         &self.beam
     }

@@ -22,7 +22,7 @@ use nalgebra::Point2;
 use rayon::prelude::*;
 
 /// The fast evaluation of E\[I\] is within this of the literal one, in units of the largest
-/// absolute gain of the decision; candidates closer to the best are decided by the latter.
+/// absolute gain that a decision evaluates; candidates closer to the best are decided by the latter.
 pub const GAIN_TOLERANCE: f64 = 1e-5;
 
 /// A passage is worth trying if beyond it the robot could stand on so many times the area of
@@ -361,8 +361,9 @@ impl Planner {
         let mut records = self.records(&candidates);
         if with_gain {
             self.fill_deciding_gains(&mut records);
+        } else {
+            self.score().apply(&mut records);
         }
-        self.score().apply(&mut records);
         let decided_by_oracle = if with_gain { self.decide_ties(map, &mut records) } else { 0 };
         let target = records[best(&records)?].cell;
         let negative_gains = records.iter().filter(|r| r.gain < 0.0).count();

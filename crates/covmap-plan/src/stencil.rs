@@ -53,7 +53,7 @@ pub(crate) const FARTHEST: f64 = 2000.0;
 const DISTANCE_STEP: f64 = 1.0 / (1u64 << 36) as f64;
 
 impl Stencil {
-    /// The stencil of a model's ring at a heading \[rad\]: its cells up to 2000 from the view-point.
+    /// The stencil of a model's ring at a heading \[rad\]: its cells up to 2200 from the view-point.
     pub fn new(model: &SensorModel, heading: f64) -> Self {
         let r = model.resolution();
         let usable = model.parameters().usable_range;

@@ -31,7 +31,7 @@ impl ViewPoints {
     /// Adds all view-points of another set that are in the same group as one of them.
     pub(crate) fn insert_group(&mut self, of: &Self, index: usize) {
         let (group, _) = place(self.width, index);
-        self.bits[group] = of.bits[group];
+        self.bits[group] |= of.bits[group];
     }
 
     /// The members of each group, row by row.

@@ -222,6 +222,30 @@ proptest! {
     }
 
     #[test]
+    fn what_decisions_leave_out_is_not_better(
+        scans in some_scans(), strategy in strategies(),
+        share in prop_oneof![2 => Just(0.0), 1 => 0.0..0.2f64]
+    ) {
+        let mut s = setting(strategy, 11, |p| p.uniform_share = share);
+        s.stand(0.0, 0.0);
+        let home = s.map.grid().cell_at(Point2::origin()).unwrap();
+        for (x, y, ranges) in scans {
+            // What earlier decisions evaluated and bounded is kept.
+            s.scan(x, y, &ranges);
+            let decision = s.planner.choose(&s.map, home);
+            let mut table = s.planner.clone().candidate_table(home);
+            if matches!(strategy, Strategy::IgWin { .. }) {
+                continue;
+            }
+            prop_assert_eq!(decision.is_none(), table.is_empty());
+            table.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell)));
+            for (ours, one) in decision.iter().flat_map(|d| &d.best).zip(&table) {
+                prop_assert!((ours.score - one.score).abs() <= 1e-4 * (1.0 + one.score.abs()));
+            }
+        }
+    }
+
+    #[test]
     fn a_decision_is_the_argmax_of_the_table(scans in some_scans(), strategy in strategies()) {
         let mut s = setting(strategy, 11, |_| ());
         s.stand(0.0, 0.0);
@@ -229,10 +253,12 @@ proptest! {
         for (x, y, ranges) in scans {
             s.scan(x, y, &ranges);
         }
+        let unprepared = s.planner.clone().choose(&s.map, home);
         let table = s.planner.candidate_table(home);
         let certificate = s.planner.certificate(&s.map, home);
         let open = certificate.values().iter().filter(|c| **c == CellStatus::Open).count();
         let decision = s.planner.choose(&s.map, home);
+        prop_assert_eq!(unprepared.map(|d| d.target), decision.as_ref().map(|d| d.target));
         prop_assert_eq!(open > 0, decision.as_ref().is_some_and(|d| d.passage.is_empty()));
         prop_assert_eq!(table.is_empty(), decision.is_none());
         if let Some(decision) = decision {

@@ -2,8 +2,9 @@
 //!
 //! Imagined readings are put into families: in front of the end, by the band of distance of the
 //! cell and that of the end; at the end and behind it, by that of the end; and no echo. For each
-//! family every cell keeps its *potential*: a gain that no reading of the family exceeds. The
-//! bound of a beam is Eq. (14) with potentials in place of gains, and has a tenth of its terms.
+//! family every cell keeps its *potential*: a gain that no reading of the family exceeds, as far as
+//! that is probed. The bound of a beam is Eq. (14) with potentials in place of gains, and has a
+//! tenth of its terms.
 //!
 //! A potential is the largest gain of a few members of the family, with a margin. Members and
 //! margin are found when the tables are built, on histograms of all kinds, as the nodes of an
@@ -26,7 +27,7 @@ const MARGIN: f64 = 1.15;
 /// looked at.
 const CAUTION: f64 = 1.02;
 /// A potential may be too large by this, in units of a gain that matters.
-const SLACK: f64 = 2e-3;
+const SLACK: f64 = 4e-3;
 
 /// Readings that have one potential.
 #[derive(Debug, Clone)]
@@ -140,14 +141,19 @@ impl Potentials {
 }
 
 impl Family {
-    /// As few of the members as the margin allows: one after the other the one that exceeds the
-    /// potential by most.
-    fn new(members: Vec<Evidence>, probes: &Probes) -> Self {
+    /// The corners of the family, and as few of the other members as the margin allows: one after
+    /// the other the one that exceeds the potential by most.
+    fn new(members: Members, probes: &Probes) -> Self {
+        let Members { corners, others: members } = members;
         let gains: Vec<Vec<f64>> = members.iter().map(|member| probes.gains(member)).collect();
         let slack = SLACK * probes.scale();
         let count = gains.first().map_or(0, Vec::len);
         let mut largest = vec![0.0f64; count];
         let mut readings = Vec::new();
+        for corner in &corners {
+            readings.push(corner.reading());
+            largest.iter_mut().zip(probes.gains(corner)).for_each(|(l, gain)| *l = l.max(gain));
+        }
         loop {
             // How many times as large as allowed the gain of a member is, for the worst probe.
             let excess = |gains: &Vec<f64>| {
@@ -160,59 +166,85 @@ impl Family {
             readings.push(members[member].reading());
             largest.iter_mut().zip(&gains[member]).for_each(|(l, gain)| *l = l.max(*gain));
         }
-        if readings.is_empty() {
-            readings.extend(members.first().map(Evidence::reading));
-        }
         #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
         let (margin, slack) = ((MARGIN * CAUTION) as f32, (CAUTION * slack) as f32);
         Self { readings, margin, slack }
     }
 }
 
-/// Members of all families, near enough to each other to stand for those between them.
-fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> Vec<Vec<Evidence>> {
+/// Some members of a family, near enough to each other to stand for those between them.
+#[derive(Debug, Clone, Default)]
+struct Members {
+    /// Those at its edges: a gain that changes little within the family is largest at one of them,
+    /// also where it is next to nothing.
+    corners: Vec<Evidence>,
+    others: Vec<Evidence>,
+}
+
+impl Members {
+    fn add(&mut self, member: Evidence, is_corner: bool) {
+        if is_corner { &mut self.corners } else { &mut self.others }.push(member);
+    }
+}
+
+/// Members of all families.
+fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> Vec<Members> {
     let (half, behind) = (0.5 * model.resolution(), model.parameters().behind);
     // Shifted by a quarter of its width, a Gaussian gains about the same.
-    #[allow(clippy::cast_possible_truncation, reason = "below 65")]
-    let shifts = (2.0 / model.parameters().sigma_in).ceil().clamp(8.0, 64.0) as i32;
-    let mut families = vec![Vec::new(); NO_ECHO + 1];
+    #[allow(clippy::cast_possible_truncation, reason = "below 257")]
+    let shifts = (2.0 / model.parameters().sigma_in).ceil().clamp(8.0, 256.0) as i32;
+    let mut families = vec![Members::default(); NO_ECHO + 1];
     let echo = |distance: f64, k: usize| Evidence::new(model, distance, Outcome::Echo(ranges[k]));
-    // In a band, its first, last and middle ring.
+    // In a band, its first, last and middle ring; and the second: at the sensor itself half of what
+    // ends there is no distance.
     let band = |band: usize| {
         let rings: Vec<usize> = (0..ranges.len()).filter(|k| bands[*k] == band).collect();
         let (first, last) = (rings.first().copied(), rings.last().copied());
         let middle = rings.get(rings.len() / 2).copied();
-        let mut some: Vec<usize> = [first, middle, last].into_iter().flatten().collect();
+        let second = rings.get(1).copied();
+        let mut some: Vec<usize> = [first, second, middle, last].into_iter().flatten().collect();
+        some.sort_unstable();
         some.dedup();
         some
     };
     for end in 0..BANDS {
+        let ends = band(end);
+        let is_edge = |rings: &[usize], i: usize| i <= 1 || i + 1 == rings.len();
         for cell in 0..=end {
-            for k in band(end) {
-                for ring in band(cell) {
+            let rings = band(cell);
+            for (i, k) in ends.iter().enumerate() {
+                for (j, ring) in rings.iter().enumerate() {
                     // Just below the border of what ends there.
                     for side in [-1.0, 0.0, 1.0 - 1e-6] {
-                        let distance = ranges[ring] + half * side;
-                        let is_front = distance >= 0.0 && distance < ranges[k] - half;
-                        families[front(cell, end)].extend(is_front.then(|| echo(distance, k)));
+                        let distance = (ranges[*ring] + half * side).max(0.0);
+                        if distance < ranges[*k] - half {
+                            let is_corner = is_edge(&ends, i) && is_edge(&rings, j) && side != 0.0;
+                            families[front(cell, end)].add(echo(distance, *k), is_corner);
+                        }
                     }
                 }
             }
         }
-        for k in band(end) {
-            for step in -shifts..=shifts {
-                let distance = ranges[k] + half * f64::from(step) / f64::from(shifts);
-                families[near(end)].extend((distance >= 0.0).then(|| echo(distance, k)));
-            }
-            for step in 1..=4 {
-                let distance = ranges[k] + half + behind * f64::from(step) / 4.0;
-                families[near(end)].push(echo(distance, k));
+        for (i, k) in ends.iter().enumerate() {
+            // On either side of both borders rounding decides whether a cell is at the end.
+            let borders = [-1.0 - 1e-6, 1.0 + 1e-6].map(|side| (ranges[*k] + half * side, true));
+            let at_end = (-shifts..=shifts).map(|step| {
+                let distance = ranges[*k] + half * f64::from(step) / f64::from(shifts);
+                (distance, step % 4 == 0 && is_edge(&ends, i))
+            });
+            let behind =
+                (1..=4).map(|step| (ranges[*k] + half + behind * f64::from(step) / 4.0, step == 4));
+            for (distance, is_corner) in borders.into_iter().chain(at_end).chain(behind) {
+                if distance >= 0.0 {
+                    families[near(end)].add(echo(distance, *k), is_corner);
+                }
             }
         }
     }
     for step in 0..=8 {
         let distance = model.reach(Outcome::NoEcho) * f64::from(step) / 8.0;
-        families[NO_ECHO].push(Evidence::new(model, distance, Outcome::NoEcho));
+        let evidence = Evidence::new(model, distance, Outcome::NoEcho);
+        families[NO_ECHO].add(evidence, step % 4 == 0);
     }
     families
 }

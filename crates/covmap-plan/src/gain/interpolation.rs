@@ -88,6 +88,20 @@ fn lagrange(nodes: &[f64], x: f64) -> Vec<f64> {
     (0..nodes.len()).map(weight).collect()
 }
 
+/// How wide the peaks of the probes are, and what they stand on: much after few readings.
+const WIDTHS_AND_FLOORS: [(f64, f64); 10] = [
+    (0.04, 1e-6),
+    (0.04, 1e-2),
+    (0.04, 0.5),
+    (0.12, 1e-6),
+    (0.12, 1e-3),
+    (0.12, 0.2),
+    (0.12, 5.0),
+    (0.12, 30.0),
+    (0.4, 1e-3),
+    (0.4, 5.0),
+];
+
 /// Histograms of all kinds: the errors of an interpolation are measured on them.
 #[derive(Debug, Clone)]
 pub(crate) struct Probes {
@@ -110,9 +124,7 @@ impl Probes {
         let bins = strongest.bins();
         let mut probes = vec![vec![1.0; bins]];
         for center in [0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0] {
-            for (width, floor) in
-                [(0.04, 1e-6), (0.04, 1e-2), (0.12, 1e-6), (0.12, 1e-3), (0.4, 1e-3)]
-            {
+            for (width, floor) in WIDTHS_AND_FLOORS {
                 let peak = |center: f64, bin: usize| {
                     let z = (bin_coverage(bin, bins) - center) / width;
                     libm::exp(-0.5 * z * z)
