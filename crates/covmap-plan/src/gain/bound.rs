@@ -209,7 +209,7 @@ fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> Vec<Members
     };
     for end in 0..BANDS {
         let ends = band(end);
-        let is_edge = |rings: &[usize], i: usize| i <= 1 || i + 1 == rings.len();
+        let is_edge = |rings: &[usize], i: usize| i == 0 || i + 1 == rings.len();
         for cell in 0..=end {
             let rings = band(cell);
             for (i, k) in ends.iter().enumerate() {
@@ -218,7 +218,8 @@ fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> Vec<Members
                     for side in [-1.0, 0.0, 1.0 - 1e-6] {
                         let distance = (ranges[*ring] + half * side).max(0.0);
                         if distance < ranges[*k] - half {
-                            let is_corner = is_edge(&ends, i) && is_edge(&rings, j) && side != 0.0;
+                            let outermost = if j == 0 { side < 0.0 } else { side > 0.0 };
+                            let is_corner = is_edge(&ends, i) && is_edge(&rings, j) && outermost;
                             families[front(cell, end)].add(echo(distance, *k), is_corner);
                         }
                     }
@@ -227,13 +228,15 @@ fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> Vec<Members
         }
         for (i, k) in ends.iter().enumerate() {
             // On either side of both borders rounding decides whether a cell is at the end.
-            let borders = [-1.0 - 1e-6, 1.0 + 1e-6].map(|side| (ranges[*k] + half * side, true));
+            let borders =
+                [-1.0 - 1e-6, 1.0 + 1e-6].map(|side| (ranges[*k] + half * side, is_edge(&ends, i)));
             let at_end = (-shifts..=shifts).map(|step| {
                 let distance = ranges[*k] + half * f64::from(step) / f64::from(shifts);
-                (distance, step % 4 == 0 && is_edge(&ends, i))
+                (distance, step % 6 == 0 && (is_edge(&ends, i) || *k == 1))
             });
-            let behind =
-                (1..=4).map(|step| (ranges[*k] + half + behind * f64::from(step) / 4.0, step == 4));
+            let behind = (1..=4).map(|step| {
+                (ranges[*k] + half + behind * f64::from(step) / 4.0, step == 4 && is_edge(&ends, i))
+            });
             for (distance, is_corner) in borders.into_iter().chain(at_end).chain(behind) {
                 if distance >= 0.0 {
                     families[near(end)].add(echo(distance, *k), is_corner);

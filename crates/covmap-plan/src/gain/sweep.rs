@@ -55,7 +55,7 @@ const AT_ONCE: usize = 16;
 
 /// Fewer units than this are worked at by one thread: for each ring another one is woken up twice,
 /// which took more than half of the time of an exploration by CL, whose reports have few units.
-const SHARED: usize = 1024;
+const SHARED: usize = 160;
 
 /// A run of neighbouring cells from a view-point: row, first and last column, and which readings
 /// of theirs are asked for, bit by bit.
