@@ -19,7 +19,7 @@ use std::str::FromStr;
 use std::time::Instant;
 
 /// Points that would take longer than this, as far as one can tell, are left out \[s\].
-const PATIENCE: f64 = 60.0;
+const PATIENCE: f64 = 200.0;
 /// The decisions after the first one.
 const NEXT: usize = 5;
 
