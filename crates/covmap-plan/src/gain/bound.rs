@@ -21,12 +21,13 @@ use covmap_model::{Outcome, SensorModel};
 
 /// Distances up to the usable range are put into so many bands.
 const BANDS: usize = 4;
-/// No member of a family gains more than this times the largest of those that are evaluated …
+/// No member of a family gains more than this times the largest of those that are evaluated, in
+/// any of the probes.
 const MARGIN: f64 = 1.15;
-/// … and no histogram more than that and a little; for histograms other than those that were
-/// looked at.
+/// Histograms that were not probed may exceed that by this factor.
 const CAUTION: f64 = 1.02;
-/// A potential may be too large by this, in units of a gain that matters.
+/// What is added to every potential, in units of a gain that matters: where gains nearly cancel, a
+/// factor is no margin.
 const SLACK: f64 = 4e-3;
 
 /// Readings that have one potential.
@@ -41,7 +42,8 @@ struct Family {
 #[derive(Debug, Clone)]
 pub(crate) struct Potentials {
     grid: Grid,
-    /// Front, by bands of cell and end; near, by band of the end; no echo.
+    /// Front, by bands of cell and end, those without members too; near, by band of the end; no
+    /// echo.
     families: Vec<Family>,
     /// The band of every range.
     bands: Vec<usize>,
