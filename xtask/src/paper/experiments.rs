@@ -94,8 +94,11 @@ fn ablated(session: &Session<'_>) -> Result<Campaign> {
     if session.quick {
         campaign.name.push_str("-quick");
         campaign.starts = Starts::Given;
-        // In coarse cells, all of them: the one setting with fine cells would be the first again.
-        campaign.settings.retain(|setting| setting.overrides.contains_key("resolution"));
+        // In coarse cells, and cut short, all of them: the settings with fine cells, and those that
+        // run to their end with strategies of their own, would be the first again.
+        campaign.settings.retain(|setting| {
+            setting.overrides.contains_key("resolution") && setting.strategies.is_none()
+        });
         campaign.worlds.iter_mut().for_each(|world| world.resolution = Some(0.2));
         campaign.settings.iter_mut().for_each(|setting| setting.max_scans = Some(QUICK_SCANS));
     }
