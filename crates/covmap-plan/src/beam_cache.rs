@@ -1,8 +1,10 @@
 //! What each beam of each view-point sees and gains, kept until a scan changes it.
 
+mod rows;
+
 use crate::cells::Cells;
 use crate::gain::bound::Potentials;
-use crate::gain::sweep::{Row, Sides, Sweep, Unit};
+use crate::gain::sweep::{Row, Sweep};
 use crate::look_ahead::{Ahead, Cone};
 use crate::onlookers::{Mark, Onlookers};
 use crate::view_points::{ViewPoints, groups, place};
@@ -10,8 +12,9 @@ use crate::{PlannerParameters, Stencil};
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
 use covmap_model::{Registers, SensorModel};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 use rayon::prelude::*;
+use rows::{Bounds, Likely, Sight, average, up_to_date};
 
 /// So many outcomes of beams of groups are looked at together, at most, if all are likely: bounds
 /// the memory of their probabilities, 64 bytes each.
@@ -175,18 +178,15 @@ impl BeamCache {
 
     /// Brings upper bounds of E\[I(l)\] up to date where the gains are not, and V(l).
     pub(crate) fn refresh_bound(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
-        let Some(potentials) = &mut self.potentials else {
-            return self.refresh_gain(cells, wanted);
-        };
+        self.refresh_sight(cells, wanted);
+        let Some(potentials) = &mut self.potentials else { return };
         for block in cells.take_changed() {
-            let (potentials, cells) = (&mut *potentials, &*cells);
             self.arch.dispatch(
                 #[inline(always)]
                 || potentials.update(cells, block),
             );
         }
-        self.refresh_sight(cells, wanted);
-        let Some(potentials) = &self.potentials else { return };
+        let (potentials, cells) = (&*potentials, &*cells);
         let (per_row, beams) = (groups(&self.grid), self.cones.len());
         let rows = self
             .groups
@@ -339,96 +339,6 @@ impl BeamCache {
     }
 }
 
-/// Looks ahead from the groups of a row whose sight or reasons are stale.
-struct Sight<'a> {
-    cones: &'a [Cone],
-    cells: &'a Cells,
-    here: usize,
-    wanted: &'a [u16],
-    groups: &'a mut [Group],
-    states: &'a mut [State],
-    in_sight: &'a mut [[u16; LANES]],
-    ahead: &'a mut Ahead,
-}
-
-impl WithSimd for Sight<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { cones, cells, here, wanted, groups, states, in_sight, ahead } = self;
-        let beams = cones.len();
-        let stale = |i: &usize| wanted[*i] & !groups[*i].sight != 0;
-        let all: Vec<usize> = (0..wanted.len()).filter(stale).collect();
-        for (beam, cone) in cones.iter().enumerate() {
-            for &i in &all {
-                let (here, wanted) = (here + i * LANES, wanted[i]);
-                let (state, in_sight) =
-                    (&mut states[i * beams + beam], &mut in_sight[i * beams + beam]);
-                if wanted & !state.sight != 0 {
-                    cone.look(cells, here, ahead);
-                    *in_sight = cone.in_sight(ahead);
-                    let before = if state.sight == 0 { 0 } else { state.horizon };
-                    state.horizon = before.max(cone.dependency(ahead, wanted));
-                    state.sight |= wanted;
-                    state.reason = 0;
-                }
-                if wanted & !state.reason != 0 {
-                    state.has_reason = cone.reasons(cells, here, in_sight, state.sight);
-                    state.reason = state.sight;
-                }
-            }
-        }
-        for i in all {
-            let states = &states[i * beams..(i + 1) * beams];
-            groups[i].sight = states.iter().fold(u16::MAX, |all, s| all & s.sight & s.reason);
-            groups[i].has_reason = states.iter().fold(0, |any, s| any | s.has_reason);
-        }
-    }
-}
-
-/// Looks ahead along the beams of a row whose gains are stale.
-struct Likely<'a> {
-    cones: &'a [Cone],
-    cells: &'a Cells,
-    here: usize,
-    wanted: &'a [u16],
-    states: &'a [State],
-    y: usize,
-    ahead: &'a mut Ahead,
-}
-
-impl WithSimd for Likely<'_> {
-    type Output = Row;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Row {
-        let Self { cones, cells, here, wanted, states, y, ahead } = self;
-        let mut row = Row { y, ..Row::default() };
-        for (beam, cone) in cones.iter().enumerate() {
-            for (group, wanted) in wanted.iter().enumerate() {
-                let known = states[group * cones.len() + beam].gain;
-                if wanted & !known == 0 {
-                    continue;
-                }
-                cone.look(cells, here + group * LANES, ahead);
-                let first = row.outcomes.len();
-                ahead.likely(*wanted, |k, p| {
-                    row.outcomes.push(k);
-                    row.probabilities.push(p);
-                });
-                row.units.push(Unit {
-                    group,
-                    beam,
-                    likely: first..row.outcomes.len(),
-                    sides: Sides::default(),
-                });
-            }
-        }
-        row
-    }
-}
-
 /// Cuts rows of view-points, by their y, in portions of at most so many that span at most so many
 /// rows of the grid: what is computed for the cells around a portion needs memory for all of them.
 fn portions<T>(rows: &[(usize, T)], most: usize, span: usize) -> Vec<&[(usize, T)]> {
@@ -441,72 +351,6 @@ fn portions<T>(rows: &[(usize, T)], most: usize, span: usize) -> Vec<&[(usize, T
         rest = later;
     }
     portions
-}
-
-/// Bounds the gains of the beams of a row that are stale.
-struct Bounds<'a> {
-    cones: &'a [Cone],
-    cells: &'a Cells,
-    potentials: &'a Potentials,
-    here: usize,
-    wanted: &'a [u16],
-    groups: &'a mut [Group],
-    states: &'a mut [State],
-    gain: &'a mut [Lanes],
-    mean: &'a mut [[f64; LANES]],
-    ahead: &'a mut Ahead,
-}
-
-impl WithSimd for Bounds<'_> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        let Self { cones, cells, potentials, here, wanted, groups, states, gain, mean, ahead } =
-            self;
-        let beams = cones.len();
-        let stale = |i: &usize| wanted[*i] & !groups[*i].bound != 0;
-        let all: Vec<usize> = (0..wanted.len()).filter(stale).collect();
-        for (beam, cone) in cones.iter().enumerate() {
-            for &i in &all {
-                let (state, gain) = (&mut states[i * beams + beam], &mut gain[i * beams + beam]);
-                if wanted[i] & !state.bound == 0 {
-                    continue;
-                }
-                let here = here + i * LANES;
-                cone.look(cells, here, ahead);
-                let bound = potentials.bound(cone, here, ahead);
-                for lane in 0..LANES {
-                    let exact = state.gain >> lane & 1 == 1;
-                    gain[lane] = if exact { gain[lane] } else { bound[lane] };
-                }
-                state.bound |= wanted[i];
-            }
-        }
-        for i in all {
-            mean[i] = average(&gain[i * beams..(i + 1) * beams]);
-            (groups[i].gain, groups[i].bound) = up_to_date(&states[i * beams..(i + 1) * beams]);
-        }
-    }
-}
-
-/// For which view-points the gains of all beams are up to date, and the bounds.
-fn up_to_date(states: &[State]) -> (u16, u16) {
-    let both = |(gain, bound), state: &State| (gain & state.gain, bound & state.bound);
-    states.iter().fold((u16::MAX, u16::MAX), both)
-}
-
-/// The average over the beams.
-fn average(gains: &[Lanes]) -> [f64; LANES] {
-    let mut sum = [0.0; LANES];
-    for gains in gains {
-        for lane in 0..LANES {
-            sum[lane] += f64::from(gains[lane]);
-        }
-    }
-    #[allow(clippy::cast_precision_loss, reason = "few beams")]
-    let beams = gains.len() as f64;
-    sum.map(|gain| gain / beams)
 }
 
 #[cfg(test)]

@@ -6,6 +6,7 @@ pub(crate) mod bound;
 pub(crate) mod evidence;
 mod interpolation;
 mod rings;
+mod sums;
 pub(crate) mod sweep;
 
 use crate::{

@@ -12,9 +12,10 @@
 
 use super::evidence::{Evidence, Reading};
 use super::interpolation::Probes;
+use super::sums::add_product;
 use crate::Stencil;
 use crate::cells::Cells;
-use crate::look_ahead::{Ahead, Cone, lanes};
+use crate::look_ahead::{Ahead, Cone, Wide, lanes};
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
 use covmap_model::{Outcome, SensorModel};
@@ -116,7 +117,10 @@ impl Potentials {
         for ring in (0..farthest).rev() {
             while let Some((k, p)) = echoes.next_if(|(k, _)| *k > ring) {
                 is_beyond[self.bands[*k]] = true;
-                add(&mut beyond[self.bands[*k]], p);
+                let (beyond, p) = (&mut beyond[self.bands[*k]], narrow(p));
+                for lane in 0..LANES {
+                    beyond[lane] += p[lane];
+                }
             }
             let cells = beam.rings[ring].start..beam.rings[ring + 1].start;
             for band in (0..BANDS).filter(|band| is_beyond[*band]) {
@@ -127,16 +131,12 @@ impl Potentials {
         }
         for (k, p) in ahead.echoes() {
             let cells = beam.rings[*k].start..beam.echo_reach[*k].max(beam.rings[*k].start);
-            let mut share = [0.0; LANES];
-            add(&mut share, p);
             let sum = sum(&self.rasters[near(self.bands[*k])], cone, cells, here);
-            add_product(&mut bound, &share, &sum);
+            add_product(&mut bound, &narrow(p), &sum);
         }
         if beam.no_echo_reach > 0 {
-            let mut share = [0.0; LANES];
-            add(&mut share, ahead.no_echo());
             let sum = sum(&self.rasters[NO_ECHO], cone, 0..beam.no_echo_reach, here);
-            add_product(&mut bound, &share, &sum);
+            add_product(&mut bound, &narrow(ahead.no_echo()), &sum);
         }
         bound
     }
@@ -267,17 +267,13 @@ fn sum(raster: &[f32], cone: &Cone, cells: std::ops::Range<usize>, here: usize) 
     sum
 }
 
+/// Probabilities, as gains are kept.
 #[inline(always)]
-fn add(sum: &mut Lanes, probabilities: &[f64; LANES]) {
+fn narrow(probabilities: &Wide) -> Lanes {
+    let mut narrow = [0.0; LANES];
     for lane in 0..LANES {
         #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-        (sum[lane] += probabilities[lane] as f32);
+        (narrow[lane] = probabilities[lane] as f32);
     }
-}
-
-#[inline(always)]
-fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
-    for lane in 0..LANES {
-        sum[lane] += a[lane] * b[lane];
-    }
+    narrow
 }
