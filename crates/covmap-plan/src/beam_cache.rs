@@ -14,7 +14,7 @@ use covmap::lanes::{LANES, Lanes};
 use covmap_model::{Registers, SensorModel};
 use pulp::Arch;
 use rayon::prelude::*;
-use rows::{Bounds, Likely, Sight, average, up_to_date};
+use rows::{Bounds, Changed, Likely, Sight, average, up_to_date};
 
 /// So many outcomes of beams of groups are looked at together, at most, if all are likely: bounds
 /// the memory of their probabilities, 64 bytes each.
@@ -24,6 +24,10 @@ const PORTION: usize = 1 << 22;
 /// up takes longer than to look through them.
 const ROWS: usize = 8;
 const GROUPS: usize = 4096;
+
+/// Changed blocks of cells are looked at in portions of so many, and by one thread at least so many.
+const BLOCKS: usize = 4096;
+const FEW_BLOCKS: usize = 8;
 
 /// One beam of a group of view-points: which of them are up to date, bit by bit.
 #[derive(Debug, Clone, Copy, Default)]
@@ -146,6 +150,26 @@ impl BeamCache {
         });
     }
 
+    /// Brings up to date what is kept of the gains in changed cells.
+    fn take_changes(&mut self, cells: &mut Cells) {
+        let changed = cells.take_changed();
+        for changed in changed.chunks(BLOCKS) {
+            let (basis, potentials, arch) = (&self.sweep.basis, &self.potentials, self.arch);
+            let evaluate = |block: &usize| {
+                let changed = Changed { prior: cells.block(*block), basis, potentials };
+                (*block, arch.dispatch(changed))
+            };
+            let evaluated: Vec<_> =
+                changed.par_iter().with_min_len(FEW_BLOCKS).map(evaluate).collect();
+            for (block, (gains, of_families)) in evaluated {
+                self.sweep.basis.keep(block, &gains);
+                if let Some(potentials) = &mut self.potentials {
+                    potentials.keep(cells, block, &of_families);
+                }
+            }
+        }
+    }
+
     /// Brings V(l), and whether it holds a reason to measure, up to date.
     pub(crate) fn refresh_sight(&mut self, cells: &Cells, wanted: &ViewPoints) {
         self.take_marks();
@@ -179,14 +203,9 @@ impl BeamCache {
     /// Brings upper bounds of E\[I(l)\] up to date where the gains are not, and V(l).
     pub(crate) fn refresh_bound(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
         self.refresh_sight(cells, wanted);
-        let Some(potentials) = &mut self.potentials else { return };
-        for block in cells.take_changed() {
-            self.arch.dispatch(
-                #[inline(always)]
-                || potentials.update(cells, block),
-            );
-        }
-        let (potentials, cells) = (&*potentials, &*cells);
+        self.take_changes(cells);
+        let Some(potentials) = &self.potentials else { return };
+        let cells = &*cells;
         let (per_row, beams) = (groups(&self.grid), self.cones.len());
         let rows = self
             .groups
@@ -224,8 +243,10 @@ impl BeamCache {
     }
 
     /// Brings E\[I(l)\] up to date, and V(l).
-    pub(crate) fn refresh_gain(&mut self, cells: &Cells, wanted: &ViewPoints) {
+    pub(crate) fn refresh_gain(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
         self.refresh_sight(cells, wanted);
+        self.take_changes(cells);
+        let cells = &*cells;
         let (per_row, beams) = (groups(&self.grid), self.cones.len());
         let stale = |(row, wanted): (usize, &[u16])| {
             let groups = &self.groups[row * per_row..(row + 1) * per_row];
@@ -396,7 +417,7 @@ mod tests {
                 cells.set_limit(index, 1.0);
                 cache.mark(index, Mark::Sight);
             }
-            cache.refresh_gain(&cells, &wanted);
+            cache.refresh_gain(&mut cells, &wanted);
         }
         let gains = (0..grid.len()).map(|index| cache.gain(index).to_bits()).collect();
         let reasons = (0..cache.groups.len()).map(|group| cache.reasons(group)).collect();
@@ -429,7 +450,7 @@ mod tests {
                 let bounded = |index: &usize| !cache.is_exact(*index);
                 let bounded: Vec<usize> = (0..grid.len()).filter(bounded).collect();
                 assert!(!bounded.is_empty());
-                cache.refresh_gain(&cells, &wanted);
+                cache.refresh_gain(&mut cells, &wanted);
                 for index in bounded {
                     assert!(cache.is_exact(index) && cache.gain(index) <= bounds[index]);
                     loose += bounds[index] - cache.gain(index);

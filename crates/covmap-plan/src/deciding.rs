@@ -57,7 +57,7 @@ impl Planner {
         let mut wanted = ViewPoints::new(&self.grid);
         let indices = places.iter().filter_map(|i| self.grid.index(records[*i].cell));
         indices.for_each(|index| wanted.insert_group(all, index));
-        self.beams.refresh_gain(&self.cells, &wanted);
+        self.beams.refresh_gain(&mut self.cells, &wanted);
     }
 
     /// Fills in gains, or bounds, and scores. Returns which are gains.

@@ -2,6 +2,7 @@
 //!
 //! This file is the equations as printed, in f64: the oracle. [`sweep`] holds what runs.
 
+pub(crate) mod basis;
 pub(crate) mod bound;
 pub(crate) mod evidence;
 mod interpolation;

@@ -319,7 +319,7 @@ impl Planner {
             indices.for_each(|index| self.beams.forget_gain(index));
         }
         let wanted = self.view_points(records);
-        self.beams.refresh_gain(&self.cells, &wanted);
+        self.beams.refresh_gain(&mut self.cells, &wanted);
         for record in records {
             record.gain = self.grid.index(record.cell).map_or(0.0, |index| self.beams.gain(index));
         }

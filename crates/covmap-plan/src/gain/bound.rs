@@ -10,12 +10,13 @@
 //! margin are found when the tables are built, on histograms of all kinds, as the nodes of an
 //! interpolation are ([`Probes`]).
 
-use super::evidence::{Evidence, Reading};
+use super::evidence::{Evidence, Prior, Reading};
 use super::interpolation::Probes;
 use super::sums::add_product;
 use crate::Stencil;
 use crate::cells::Cells;
 use crate::look_ahead::{Ahead, Cone, Wide, lanes};
+use crate::view_points::groups;
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
 use covmap_model::{Outcome, SensorModel};
@@ -78,18 +79,10 @@ impl Potentials {
         Self { grid, families, bands, rasters }
     }
 
-    /// Computes the potentials of a block of cells anew.
+    /// Computes the potentials of a block of cells, family by family.
     #[inline(always)]
-    pub(crate) fn update(&mut self, cells: &Cells, block: usize) {
-        let per_row = crate::view_points::groups(&self.grid);
-        let (x, y) = (block % per_row * LANES, block / per_row);
-        let count = LANES.min(self.grid.width() - x);
-        let at = cells.bordered(y * self.grid.width() + x);
-        let prior = cells.block(block);
-        for (family, raster) in self.families.iter().zip(&mut self.rasters) {
-            if family.readings.is_empty() {
-                continue;
-            }
+    pub(crate) fn evaluate(&self, prior: &Prior<'_>, out: &mut Vec<Lanes>) {
+        for family in &self.families {
             let mut potential = [0.0; LANES];
             for reading in &family.readings {
                 let gain = prior.gain(reading);
@@ -100,8 +93,18 @@ impl Potentials {
             for (potential, changeable) in potential.iter_mut().zip(prior.changeable) {
                 *potential = changeable * (*potential * family.margin + family.slack);
             }
-            raster[at..at + count].copy_from_slice(&potential[..count]);
+            out.push(potential);
         }
+    }
+
+    /// Keeps the potentials of a block of cells.
+    pub(crate) fn keep(&mut self, cells: &Cells, block: usize, potentials: &[Lanes]) {
+        let per_row = groups(&self.grid);
+        let (x, y) = (block % per_row * LANES, block / per_row);
+        let count = LANES.min(self.grid.width() - x);
+        let at = cells.bordered(y * self.grid.width() + x);
+        let used = self.rasters.iter_mut().zip(potentials).filter(|(raster, _)| !raster.is_empty());
+        used.for_each(|(raster, p)| raster[at..at + count].copy_from_slice(&p[..count]));
     }
 
     /// An upper bound of a beam's part of E\[I\] from neighbouring view-points.

@@ -159,6 +159,19 @@ impl Probes {
         before.zip(self.after(evidence)).map(|(before, after)| before - after).collect()
     }
 
+    /// The gains of all probes by each of some readings, in units of what an interpolated one may be
+    /// off.
+    pub(crate) fn in_tolerances(&self, readings: &[&Evidence]) -> Vec<Vec<f64>> {
+        let after: Vec<Vec<f64>> = readings.iter().map(|reading| self.after(reading)).collect();
+        let allowed = self.allowed(&after, 1.0);
+        let before: Vec<f64> = self.probes.iter().map(|(_, u)| -u.iter().sum::<f64>()).collect();
+        let scaled = |after: Vec<f64>| {
+            let gains = before.iter().zip(after).map(|(before, after)| before - after);
+            gains.zip(&allowed).map(|(gain, allowed)| gain / allowed).collect()
+        };
+        after.into_iter().map(scaled).collect()
+    }
+
     /// The entropy of every probe after a reading \[nats\].
     fn after(&self, evidence: &Evidence) -> Vec<f64> {
         self.probes.iter().map(|(h, u)| evidence.entropy_after(h, u)).collect()

@@ -5,7 +5,8 @@
 //! smooth in δ and in d, so that a few readings stand for all ranges ([`Nodes`]); behind it is
 //! smooth in δ; at the end every distance is evaluated by itself.
 
-use super::evidence::{Evidence, Reading};
+use super::basis::{Basis, Imagined};
+use super::evidence::Evidence;
 use super::interpolation::{Nodes, Probes};
 use crate::{BeamStencil, Stencil};
 use covmap::lanes::TOGETHER;
@@ -19,7 +20,7 @@ const MOST_LENIENT: f64 = 10.0;
 /// The readings of one ring.
 #[derive(Debug, Clone)]
 pub(crate) struct Ring {
-    pub(crate) readings: Vec<Reading>,
+    pub(crate) readings: Vec<Imagined>,
     pub(crate) front: Option<Front>,
     /// By outcome.
     pub(crate) near: Vec<(usize, Source)>,
@@ -64,8 +65,8 @@ pub(crate) enum Shares {
     Own(Vec<Vec<(usize, usize)>>),
 }
 
-/// All rings, nearest first.
-pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> Vec<Ring> {
+/// All rings, nearest first, and the readings that those of theirs are mixtures of.
+pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> (Vec<Ring>, Basis) {
     let probes = Probes::of_model(model);
     let count = (0..).find(|ring| {
         stencil
@@ -74,7 +75,18 @@ pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> Vec<Ring> {
             .all(|beam| members(beam, *ring, model.resolution()).start == beam.cells.len())
     });
     let build = |ring| Builder::new(model, stencil, &probes, ring).build();
-    (0..count.unwrap_or(0)).map(build).collect()
+    let (mut rings, readings): (Vec<Ring>, Vec<_>) = (0..count.unwrap_or(0)).map(build).unzip();
+    let mut basis = Basis::default();
+    let mut imagined = SIDES.map(|side| {
+        let of_side = readings.iter().flatten().filter(|(s, _)| *s == side);
+        let of_side: Vec<&Evidence> = of_side.map(|(_, evidence)| evidence).collect();
+        basis.imagine(&of_side, &probes).into_iter()
+    });
+    for (ring, readings) in rings.iter_mut().zip(&readings) {
+        let imagined = readings.iter().filter_map(|(side, _)| imagined[*side as usize].next());
+        ring.readings = imagined.collect();
+    }
+    (rings, basis)
 }
 
 /// A beam's cells in a ring: every cell is in one, also where rounding leaves it out of the rings
@@ -98,7 +110,11 @@ enum Side {
     Front,
     End,
     Behind,
+    Nowhere,
 }
+
+/// All sides, in order.
+const SIDES: [Side; 4] = [Side::Front, Side::End, Side::Behind, Side::Nowhere];
 
 struct Builder<'a> {
     model: &'a SensorModel,
@@ -109,7 +125,8 @@ struct Builder<'a> {
     cells: Vec<Range<usize>>,
     /// All distances of the ring's cells, in order.
     distances: Vec<f64>,
-    readings: Vec<Reading>,
+    /// With where they end.
+    readings: Vec<(Side, Evidence)>,
 }
 
 impl<'a> Builder<'a> {
@@ -131,7 +148,7 @@ impl<'a> Builder<'a> {
         Self { leniency, model, stencil, probes, cells, distances, readings: Vec::new() }
     }
 
-    fn build(mut self) -> Ring {
+    fn build(mut self) -> (Ring, Vec<(Side, Evidence)>) {
         let ranges = self.stencil.ranges.len();
         let is_near = |k: &usize| self.any_cell(*k, |d| self.side(d, *k) != Side::Front);
         let near: Vec<usize> = (0..ranges).filter(is_near).collect();
@@ -141,9 +158,9 @@ impl<'a> Builder<'a> {
         let reaches_no_echo = self.any_cell(ranges, |_| true);
         let no_echo = reaches_no_echo.then(|| {
             let model = self.model;
-            self.smooth(ranges, |d| Evidence::new(model, d, Outcome::NoEcho))
+            self.smooth(ranges, Side::Nowhere, |d| Evidence::new(model, d, Outcome::NoEcho))
         });
-        Ring { readings: self.readings, front, near, no_echo, cells: self.cells }
+        (Ring { readings: Vec::new(), front, near, no_echo, cells: self.cells }, self.readings)
     }
 
     fn side(&self, cell_distance: f64, k: usize) -> Side {
@@ -171,11 +188,6 @@ impl<'a> Builder<'a> {
         self.covered(k).any(|(beam, i)| is_wanted(self.stencil.beams[beam].cells[i].cell_distance))
     }
 
-    fn push(&mut self, evidence: &Evidence) -> usize {
-        self.readings.push(evidence.reading());
-        self.readings.len() - 1
-    }
-
     /// All outcomes from the `first` on.
     fn front(&mut self, first: usize) -> Front {
         let (model, probes) = (self.model, (self.probes, self.leniency));
@@ -192,7 +204,7 @@ impl<'a> Builder<'a> {
         let in_distance = Nodes::new(&self.distances, distances, None);
         for range in &in_range.at {
             for distance in &in_distance.at {
-                self.push(&at(*distance, *range));
+                self.readings.push((Side::Front, at(*distance, *range)));
             }
         }
         let weight = |row: &[f64], node: usize| row.get(node).map_or(0.0, |w| to_f32(*w));
@@ -209,12 +221,12 @@ impl<'a> Builder<'a> {
     fn near(&mut self, k: usize) -> Source {
         let (model, outcome) = (self.model, self.stencil.outcome(k));
         if !self.any_cell(k, |d| self.side(d, k) != Side::Behind) {
-            return self.smooth(k, |d| Evidence::new(model, d, outcome));
+            return self.smooth(k, Side::Behind, |d| Evidence::new(model, d, outcome));
         }
         let first = self.readings.len();
         let distances = self.distances.clone();
         for d in &distances {
-            self.push(&Evidence::new(model, *d, outcome));
+            self.readings.push((Side::End, Evidence::new(model, *d, outcome)));
         }
         let mut own = vec![Vec::new(); self.cells.len()];
         for (beam, i) in self.covered(k) {
@@ -226,11 +238,11 @@ impl<'a> Builder<'a> {
     }
 
     /// An outcome whose gain is smooth in the distance, for the cells that it covers.
-    fn smooth(&mut self, k: usize, evidence: impl Fn(f64) -> Evidence) -> Source {
+    fn smooth(&mut self, k: usize, side: Side, evidence: impl Fn(f64) -> Evidence) -> Source {
         let nodes = Nodes::few(&self.distances, None, (self.probes, self.leniency), &evidence);
         let (first, count) = (self.readings.len(), nodes.at.len());
         for at in &nodes.at {
-            self.push(&evidence(*at));
+            self.readings.push((side, evidence(*at)));
         }
         Source { first, count, shares: Shares::Weights(self.of_cells(&nodes, k)) }
     }

@@ -5,6 +5,7 @@
 //! summed over the cells of each beam of each view-point, [`LANES`] neighbours of a row side by
 //! side.
 
+use super::basis::Basis;
 use super::rings::{Ring, Shares, Source, rings};
 use super::sums::{add_product, mix_outcomes};
 use crate::cells::Cells;
@@ -91,6 +92,8 @@ struct Asks {
 pub(crate) struct Sweep {
     grid: Grid,
     rings: Vec<Ring>,
+    /// To be kept up to date with the cells.
+    pub(crate) basis: Basis,
     /// For each ring.
     asks: Vec<Asks>,
     /// For each beam where its cells lie in the planes from the view-point.
@@ -107,7 +110,8 @@ pub(crate) struct Sweep {
 
 impl Sweep {
     pub(crate) fn new(model: &SensorModel, stencil: &Stencil, grid: Grid) -> Self {
-        let rings = rings(model, stencil);
+        let (rings, mut basis) = rings(model, stencil);
+        basis.make_room(grid.height() * groups(&grid));
         let border = usize::try_from(stencil.radius).unwrap_or(0).next_multiple_of(LANES);
         let stride = grid.width().next_multiple_of(LANES) + 2 * border;
         let row = stride * rings.iter().map(|ring| ring.readings.len()).max().unwrap_or(0);
@@ -117,6 +121,7 @@ impl Sweep {
             grid,
             asks: rings.iter().map(|ring| asks(ring, stencil)).collect(),
             rings,
+            basis,
             offsets: stencil.beams.iter().map(|b| b.cells.iter().map(offset).collect()).collect(),
             no_echo: stencil.ranges.len(),
             border,
@@ -266,7 +271,8 @@ impl WithSimd for Fill<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let Self { sweep, ring, cells, y, asked, planes } = self;
         for (x, asked) in asked.iter().enumerate().filter(|(_, asked)| **asked != 0) {
-            let prior = cells.block(y * groups(&sweep.grid) + x);
+            let block = y * groups(&sweep.grid) + x;
+            let prior = cells.block(block);
             let column = sweep.border + x * LANES;
             // Bit by bit: to ask reading by reading, a processor would guess wrong too often.
             let mut left = *asked;
@@ -275,7 +281,8 @@ impl WithSimd for Fill<'_> {
                 left &= left - 1;
                 for (i, reading) in ring.readings.iter().enumerate().skip(first).step_by(64) {
                     let at = i * sweep.stride + column;
-                    planes[at..at + LANES].copy_from_slice(&prior.gain(reading));
+                    planes[at..at + LANES]
+                        .copy_from_slice(&sweep.basis.gain(reading, &prior, block));
                 }
             }
         }
