@@ -270,11 +270,11 @@ impl BeamCache {
                     ahead,
                 })
             };
-            let mut rows: Vec<Row> =
+            let rows: Vec<Row> =
                 rows.par_iter().with_min_len(ROWS).map_init(Ahead::new, look).collect();
-            self.sweep.run(self.arch, cells, &mut rows);
-            for row in rows {
-                for (unit, gains) in row.units.iter().zip(row.gains) {
+            let gains = self.sweep.run(self.arch, cells, &rows);
+            for (row, gains) in rows.iter().zip(gains) {
+                for (unit, gains) in row.units.iter().zip(gains) {
                     let group = row.y * per_row + unit.group;
                     let at = group * beams + unit.beam;
                     let wanted = wanted.groups()[group];

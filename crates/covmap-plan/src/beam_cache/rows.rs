@@ -5,7 +5,7 @@ use crate::cells::Cells;
 use crate::gain::basis::Basis;
 use crate::gain::bound::Potentials;
 use crate::gain::evidence::Prior;
-use crate::gain::sweep::{Row, Sides, Unit};
+use crate::gain::sweep::{Row, Unit};
 use crate::look_ahead::{Ahead, Cone};
 use covmap::lanes::{LANES, Lanes};
 use pulp::{Simd, WithSimd};
@@ -110,12 +110,7 @@ impl WithSimd for Likely<'_> {
                     row.outcomes.push(k);
                     row.probabilities.push(p);
                 });
-                row.units.push(Unit {
-                    group,
-                    beam,
-                    likely: first..row.outcomes.len(),
-                    sides: Sides::default(),
-                });
+                row.units.push(Unit { group, beam, likely: first..row.outcomes.len() });
             }
         }
         row

@@ -20,7 +20,7 @@ use std::ops::Range;
 
 /// The places of a unit's outcomes by where they end from a ring.
 #[derive(Debug, Clone, Default)]
-pub(crate) struct Sides {
+struct Sides {
     near: Range<usize>,
     front: Range<usize>,
     no_echo: Option<usize>,
@@ -32,11 +32,8 @@ pub(crate) struct Unit {
     /// The group's place in its row.
     pub(crate) group: usize,
     pub(crate) beam: usize,
-    /// Which of the row's outcomes are its own. While it is worked at those are dropped from the
-    /// front that end before the present ring.
+    /// Which of the row's outcomes are its own.
     pub(crate) likely: Range<usize>,
-    /// Those of the present ring.
-    pub(crate) sides: Sides,
 }
 
 /// The units of one row of view-points.
@@ -48,8 +45,44 @@ pub(crate) struct Row {
     pub(crate) outcomes: Vec<usize>,
     /// … and their probabilities.
     pub(crate) probabilities: Vec<Lanes>,
-    /// E\[I\] of every unit: the result. Summed ring by ring: gains of either sign nearly cancel.
-    pub(crate) gains: Vec<[f64; LANES]>,
+}
+
+/// E\[I\] of every unit of a row. Summed ring by ring: gains of either sign nearly cancel.
+pub(crate) type Gains = Vec<[f64; LANES]>;
+
+/// A row at one ring after the other.
+struct Turn<'a> {
+    row: &'a Row,
+    units: Vec<Progress>,
+}
+
+/// A unit at one ring after the other.
+struct Progress {
+    /// Its outcomes but for those that end before the present ring.
+    left: Range<usize>,
+    /// Those of the present ring.
+    sides: Sides,
+    gain: [f64; LANES],
+}
+
+impl<'a> Turn<'a> {
+    fn new(row: &'a Row) -> Self {
+        let begin = |unit: &Unit| Progress {
+            left: unit.likely.clone(),
+            sides: Sides::default(),
+            gain: [0.0; LANES],
+        };
+        Self { row, units: row.units.iter().map(begin).collect() }
+    }
+}
+
+/// The gains of the cells around some rows at one ring, and which of them are asked for.
+#[derive(Debug, Clone, Default)]
+struct Room {
+    /// For each row of cells the planes of all readings; 0 outside of the grid.
+    planes: Vec<f32>,
+    /// For each block of cells bit by bit.
+    asked: Vec<u64>,
 }
 
 /// So many units of a row are prepared and then summed.
@@ -106,6 +139,8 @@ pub(crate) struct Sweep {
     stride: usize,
     /// From one row of cells to the next.
     row: usize,
+    /// Kept, because fresh memory is slow: one for the rings nearby, one for those far away.
+    rooms: [Room; 2],
 }
 
 impl Sweep {
@@ -127,6 +162,7 @@ impl Sweep {
             border,
             stride,
             row,
+            rooms: [Room::default(), Room::default()],
         }
     }
 
@@ -136,44 +172,88 @@ impl Sweep {
     }
 
     /// Computes the gains of all units of some rows, in order of y.
-    pub(crate) fn run(&self, arch: Arch, cells: &Cells, rows: &mut [Row]) {
+    pub(crate) fn run(&mut self, arch: Arch, cells: &Cells, rows: &[Row]) -> Vec<Gains> {
+        let mut rooms = std::mem::take(&mut self.rooms);
+        let [near, far] = &mut rooms;
+        let half = self.half();
+        let (mut gains, more) = rayon::join(
+            || self.turn(arch, cells, rows, 0..half, near),
+            || self.turn(arch, cells, rows, half..self.rings.len(), far),
+        );
+        for (gain, more) in gains.iter_mut().flatten().zip(more.iter().flatten()) {
+            for lane in 0..LANES {
+                gain[lane] += more[lane];
+            }
+        }
+        self.rooms = rooms;
+        gains
+    }
+
+    /// How many rings have half of all cells.
+    fn half(&self) -> usize {
+        let sizes = || self.rings.iter().map(|r| r.cells.iter().map(Range::len).sum::<usize>());
+        let all: usize = sizes().sum();
+        let mut sum = 0;
+        sizes()
+            .take_while(|size| {
+                sum += size;
+                2 * sum <= all
+            })
+            .count()
+    }
+
+    /// What some rings contribute to the gains.
+    fn turn(
+        &self,
+        arch: Arch,
+        cells: &Cells,
+        rows: &[Row],
+        rings: Range<usize>,
+        room: &mut Room,
+    ) -> Vec<Gains> {
         let Some((low, high)) = rows.first().zip(rows.last()).map(|(l, h)| (l.y, h.y)) else {
-            return;
+            return Vec::new();
         };
-        rows.iter_mut().for_each(|row| row.gains = vec![[0.0; LANES]; row.units.len()]);
         let units: usize = rows.iter().map(|row| row.units.len()).sum();
         let together = if units < SHARED { usize::MAX } else { 1 };
-        // Rows of planes from `low` − border on; those outside of the grid stay 0.
-        let mut planes = vec![0.0f32; (high - low + 1 + 2 * self.border) * self.row];
+        let mut turns: Vec<Turn> = rows.iter().map(Turn::new).collect();
         let blocks = groups(&self.grid);
-        let mut asked = vec![0; (high - low + 1 + 2 * self.border) * blocks];
-        for (ring, asks) in self.rings.iter().zip(&self.asks) {
-            asked.fill(0);
-            self.ask(ring, asks, rows, low, &mut asked);
-            let filled = planes.par_chunks_mut(self.row).zip(asked.par_chunks(blocks)).enumerate();
-            filled.with_min_len(together).for_each(|(y, (planes, asked))| {
-                let y = (y + low).checked_sub(self.border);
-                if let Some(y) = y.filter(|y| *y < self.grid.height()) {
+        // Rows of planes from `low` − border on.
+        let count = high - low + 1 + 2 * self.border;
+        room.planes.resize(count * self.row, 0.0);
+        room.asked.resize(count * blocks, 0);
+        let is_inside =
+            |y: usize| (y + low).checked_sub(self.border).filter(|y| *y < self.grid.height());
+        let outside = room.planes.chunks_mut(self.row).enumerate();
+        outside.filter(|(y, _)| is_inside(*y).is_none()).for_each(|(_, row)| row.fill(0.0));
+        for (ring, asks) in self.rings[rings.clone()].iter().zip(&self.asks[rings]) {
+            room.asked.fill(0);
+            self.ask(ring, asks, &mut turns, low, &mut room.asked);
+            let filled = room.planes.par_chunks_mut(self.row).zip(room.asked.par_chunks(blocks));
+            filled.enumerate().with_min_len(together).for_each(|(y, (planes, asked))| {
+                if let Some(y) = is_inside(y) {
                     arch.dispatch(Fill { sweep: self, ring, cells, y, asked, planes });
                 }
             });
-            rows.par_iter_mut().with_min_len(together).for_each(|row| {
-                arch.dispatch(Sum { sweep: self, ring, planes: &planes, low, row });
+            let planes = &room.planes;
+            turns.par_iter_mut().with_min_len(together).for_each(|turn| {
+                arch.dispatch(Sum { sweep: self, ring, planes, low, turn });
             });
         }
+        let gains = |turn: Turn| turn.units.iter().map(|progress| progress.gain).collect();
+        turns.into_iter().map(gains).collect()
     }
 
     /// For every block of cells from the first row's on, which readings of a ring the units need.
-    fn ask(&self, ring: &Ring, asks: &Asks, rows: &mut [Row], low: usize, asked: &mut [u64]) {
+    fn ask(&self, ring: &Ring, asks: &Asks, turns: &mut [Turn], low: usize, asked: &mut [u64]) {
         let blocks = groups(&self.grid);
         let (lanes, last_block) = (LANES.cast_signed(), blocks.cast_signed() - 1);
         let nearest = ring.near.first().map_or(0, |(k, _)| *k);
-        for row in rows {
-            let Row { y, units, outcomes, .. } = row;
-            for unit in units {
-                let passed = outcomes[unit.likely.clone()].iter().take_while(|k| **k < nearest);
-                unit.likely.start += passed.count();
-                unit.sides = self.sides(ring, unit.likely.clone(), outcomes);
+        for Turn { row: Row { y, units, outcomes, .. }, units: progress } in turns {
+            for (unit, Progress { left, sides, .. }) in units.iter().zip(progress) {
+                let passed = outcomes[left.clone()].iter().take_while(|k| **k < nearest);
+                left.start += passed.count();
+                *sides = self.sides(ring, left.clone(), outcomes);
                 let x = (unit.group * LANES).cast_signed();
                 let mut ask = |asks: &[Ask], readings: u64| {
                     for ask in asks {
@@ -186,15 +266,15 @@ impl Sweep {
                         }
                     }
                 };
-                let mut of_all = if unit.sides.front.is_empty() { 0 } else { asks.front };
-                for k in &outcomes[unit.sides.near.clone()] {
+                let mut of_all = if sides.front.is_empty() { 0 } else { asks.front };
+                for k in &outcomes[sides.near.clone()] {
                     let place = ring.near.iter().position(|(near, _)| near == k);
                     if let Some((readings, own)) = place.map(|place| &asks.near[place]) {
                         of_all |= readings;
                         own.get(unit.beam).into_iter().for_each(|own| ask(own, 0));
                     }
                 }
-                if unit.sides.no_echo.is_some() {
+                if sides.no_echo.is_some() {
                     of_all |= asks.no_echo;
                 }
                 if of_all != 0 {
@@ -290,52 +370,54 @@ impl WithSimd for Fill<'_> {
 }
 
 /// Adds what the cells of a ring contribute to every unit of a row.
-struct Sum<'a> {
+struct Sum<'a, 'b> {
     sweep: &'a Sweep,
     ring: &'a Ring,
     planes: &'a [f32],
     low: usize,
-    row: &'a mut Row,
+    turn: &'a mut Turn<'b>,
 }
 
-impl WithSimd for Sum<'_> {
+impl WithSimd for Sum<'_, '_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { sweep, ring, planes, low, row } = self;
-        let start = (row.y - low + sweep.border) * sweep.row + sweep.border;
-        let Row { units, outcomes, probabilities, gains, .. } = row;
+        let Self { sweep, ring, planes, low, turn } = self;
+        let Turn { row: Row { y, units, outcomes, probabilities }, units: progress } = turn;
+        let start = (y - low + sweep.border) * sweep.row + sweep.border;
         let mixtures = ring.front.as_ref().map_or(&[][..], |front| &front.weights);
         let mut shares = vec![[[0.0; LANES]; TOGETHER]; AT_ONCE * mixtures.len()];
-        for (units, gains) in units.chunks(AT_ONCE).zip(gains.chunks_mut(AT_ONCE)) {
+        for (units, progress) in units.chunks(AT_ONCE).zip(progress.chunks_mut(AT_ONCE)) {
             // First all that lies scattered in memory.
-            for (i, unit) in units.iter().enumerate() {
+            for (i, Progress { sides, .. }) in progress.iter().enumerate() {
                 let first = ring.front.as_ref().map_or(0, |front| front.first);
-                let likely = unit.sides.front.clone();
+                let likely = sides.front.clone();
                 let likely = outcomes[likely.clone()].iter().zip(&probabilities[likely]);
                 for (mixture, weights) in mixtures.iter().enumerate() {
                     shares[i * mixtures.len() + mixture] =
                         mix_outcomes(likely.clone(), first, weights);
                 }
             }
-            for (i, (unit, total)) in units.iter().zip(gains).enumerate() {
+            for (i, (unit, Progress { sides, gain: total, .. })) in
+                units.iter().zip(progress).enumerate()
+            {
                 let mut of_ring = [0.0; LANES];
                 let gain = &mut of_ring;
                 let cells = &sweep.offsets[unit.beam][ring.cells[unit.beam].clone()];
                 let here = start + unit.group * LANES;
                 let place = (here, sweep.stride);
-                if let Some(front) = ring.front.as_ref().filter(|_| !unit.sides.front.is_empty()) {
+                if let Some(front) = ring.front.as_ref().filter(|_| !sides.front.is_empty()) {
                     let shares = &shares[i * mixtures.len()..(i + 1) * mixtures.len()];
                     front.add(gain, shares, unit.beam, cells, planes, place);
                 }
-                let near = unit.sides.near.clone();
+                let near = sides.near.clone();
                 for (k, p) in outcomes[near.clone()].iter().zip(&probabilities[near]) {
                     if let Some((_, source)) = ring.near.iter().find(|(near, _)| near == k) {
                         add_product(gain, p, &source.sum(unit.beam, cells, planes, place));
                     }
                 }
-                if let Some((source, k)) = ring.no_echo.as_ref().zip(unit.sides.no_echo) {
+                if let Some((source, k)) = ring.no_echo.as_ref().zip(sides.no_echo) {
                     let sum = source.sum(unit.beam, cells, planes, place);
                     add_product(gain, &probabilities[k], &sum);
                 }
