@@ -139,7 +139,8 @@ pub(crate) struct Sweep {
     stride: usize,
     /// From one row of cells to the next.
     row: usize,
-    /// Kept, because fresh memory is slow: one for the rings nearby, one for those far away.
+    /// Kept, because fresh memory is slow: one for the even rings and one for the odd ones, which
+    /// take about the same time.
     rooms: [Room; 2],
 }
 
@@ -174,11 +175,10 @@ impl Sweep {
     /// Computes the gains of all units of some rows, in order of y.
     pub(crate) fn run(&mut self, arch: Arch, cells: &Cells, rows: &[Row]) -> Vec<Gains> {
         let mut rooms = std::mem::take(&mut self.rooms);
-        let [near, far] = &mut rooms;
-        let half = self.half();
+        let [even, odd] = &mut rooms;
         let (mut gains, more) = rayon::join(
-            || self.turn(arch, cells, rows, 0..half, near),
-            || self.turn(arch, cells, rows, half..self.rings.len(), far),
+            || self.turn(arch, cells, rows, 0, even),
+            || self.turn(arch, cells, rows, 1, odd),
         );
         for (gain, more) in gains.iter_mut().flatten().zip(more.iter().flatten()) {
             for lane in 0..LANES {
@@ -189,26 +189,13 @@ impl Sweep {
         gains
     }
 
-    /// How many rings have half of all cells.
-    fn half(&self) -> usize {
-        let sizes = || self.rings.iter().map(|r| r.cells.iter().map(Range::len).sum::<usize>());
-        let all: usize = sizes().sum();
-        let mut sum = 0;
-        sizes()
-            .take_while(|size| {
-                sum += size;
-                2 * sum <= all
-            })
-            .count()
-    }
-
-    /// What some rings contribute to the gains.
+    /// What every second ring from the `first` on contributes to the gains.
     fn turn(
         &self,
         arch: Arch,
         cells: &Cells,
         rows: &[Row],
-        rings: Range<usize>,
+        first: usize,
         room: &mut Room,
     ) -> Vec<Gains> {
         let Some((low, high)) = rows.first().zip(rows.last()).map(|(l, h)| (l.y, h.y)) else {
@@ -226,7 +213,7 @@ impl Sweep {
             |y: usize| (y + low).checked_sub(self.border).filter(|y| *y < self.grid.height());
         let outside = room.planes.chunks_mut(self.row).enumerate();
         outside.filter(|(y, _)| is_inside(*y).is_none()).for_each(|(_, row)| row.fill(0.0));
-        for (ring, asks) in self.rings[rings.clone()].iter().zip(&self.asks[rings]) {
+        for (ring, asks) in self.rings.iter().zip(&self.asks).skip(first).step_by(2) {
             room.asked.fill(0);
             self.ask(ring, asks, &mut turns, low, &mut room.asked);
             let filled = room.planes.par_chunks_mut(self.row).zip(room.asked.par_chunks(blocks));
