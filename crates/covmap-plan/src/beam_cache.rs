@@ -14,7 +14,7 @@ use covmap::lanes::{LANES, Lanes};
 use covmap_model::{Registers, SensorModel};
 use pulp::Arch;
 use rayon::prelude::*;
-use rows::{Bounds, Changed, Likely, Sight, average, up_to_date};
+use rows::{Bounds, Likely, Sight, average, up_to_date};
 
 /// So many outcomes of beams of groups are looked at together, at most, if all are likely: bounds
 /// the memory of their probabilities, 64 bytes each.
@@ -24,10 +24,6 @@ const PORTION: usize = 1 << 22;
 /// up takes longer than to look through them.
 const ROWS: usize = 8;
 const GROUPS: usize = 4096;
-
-/// Changed blocks of cells are looked at in portions of so many, and by one thread at least so many.
-const BLOCKS: usize = 4096;
-const FEW_BLOCKS: usize = 8;
 
 /// One beam of a group of view-points: which of them are up to date, bit by bit.
 #[derive(Debug, Clone, Copy, Default)]
@@ -127,52 +123,33 @@ impl BeamCache {
         states.iter_mut().for_each(|s| (s.gain, s.bound) = (0, 0));
     }
 
-    fn take_marks(&mut self) {
-        let Self { onlookers, groups, states, cones, .. } = self;
-        onlookers.tell(|mark, group, beam, rank| {
-            let state = &mut states[group * cones.len() + beam];
-            if rank >= state.horizon {
-                return;
-            }
-            match mark {
-                Mark::Sight => {
-                    (state.sight, state.reason) = (0, 0);
-                    (state.gain, state.bound) = (0, 0);
-                    groups[group] =
-                        Group { has_reason: groups[group].has_reason, ..Group::default() };
-                }
-                Mark::Gain => {
-                    (state.gain, state.bound) = (0, 0);
-                    (groups[group].gain, groups[group].bound) = (0, 0);
-                }
-                Mark::Limit => (state.reason, groups[group].sight) = (0, 0),
-            }
-        });
-    }
-
-    /// Brings up to date what is kept of the gains in changed cells.
+    /// Takes over what changed since the last time: forgets what depends on it, and brings up to
+    /// date what is kept of the gains in the cells themselves.
     fn take_changes(&mut self, cells: &mut Cells) {
         let changed = cells.take_changed();
-        for changed in changed.chunks(BLOCKS) {
-            let (basis, potentials, arch) = (&self.sweep.basis, &self.potentials, self.arch);
-            let evaluate = |block: &usize| {
-                let changed = Changed { prior: cells.block(*block), basis, potentials };
-                (*block, arch.dispatch(changed))
-            };
-            let evaluated: Vec<_> =
-                changed.par_iter().with_min_len(FEW_BLOCKS).map(evaluate).collect();
-            for (block, (gains, of_families)) in evaluated {
-                self.sweep.basis.keep(block, &gains);
-                if let Some(potentials) = &mut self.potentials {
-                    potentials.keep(cells, block, &of_families);
+        let (cells, beams) = (&*cells, self.cones.len());
+        let Self { onlookers, groups, states, sweep, potentials, arch, .. } = self;
+        let forget_stale = || {
+            onlookers.tell(|mark, group, beam, rank| {
+                let state = &mut states[group * beams + beam];
+                if rank < state.horizon {
+                    forget(mark, &mut groups[group], state);
                 }
+            });
+        };
+        let evaluate_changed = || {
+            sweep.basis.update(*arch, cells, &changed);
+            if let Some(potentials) = potentials {
+                potentials.update(*arch, cells, &changed);
             }
-        }
+        };
+        rayon::join(forget_stale, evaluate_changed);
     }
 
     /// Brings V(l), and whether it holds a reason to measure, up to date.
-    pub(crate) fn refresh_sight(&mut self, cells: &Cells, wanted: &ViewPoints) {
-        self.take_marks();
+    pub(crate) fn refresh_sight(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
+        self.take_changes(cells);
+        let cells = &*cells;
         let (per_row, beams) = (groups(&self.grid), self.cones.len());
         let rows = self
             .groups
@@ -203,7 +180,6 @@ impl BeamCache {
     /// Brings upper bounds of E\[I(l)\] up to date where the gains are not, and V(l).
     pub(crate) fn refresh_bound(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
         self.refresh_sight(cells, wanted);
-        self.take_changes(cells);
         let Some(potentials) = &self.potentials else { return };
         let cells = &*cells;
         let (per_row, beams) = (groups(&self.grid), self.cones.len());
@@ -245,7 +221,6 @@ impl BeamCache {
     /// Brings E\[I(l)\] up to date, and V(l).
     pub(crate) fn refresh_gain(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
         self.refresh_sight(cells, wanted);
-        self.take_changes(cells);
         let cells = &*cells;
         let (per_row, beams) = (groups(&self.grid), self.cones.len());
         let stale = |(row, wanted): (usize, &[u16])| {
@@ -357,6 +332,18 @@ impl BeamCache {
                 Some((self.grid.index(from.offset(cell.dx, cell.dy))?, distance))
             })
         })
+    }
+}
+
+/// Forgets what a change makes stale of a beam and its group.
+fn forget(mark: Mark, group: &mut Group, state: &mut State) {
+    match mark {
+        Mark::Sight => {
+            (state.sight, state.reason, state.gain, state.bound) = (0, 0, 0, 0);
+            *group = Group { has_reason: group.has_reason, ..Group::default() };
+        }
+        Mark::Gain => (state.gain, state.bound, group.gain, group.bound) = (0, 0, 0, 0),
+        Mark::Limit => (state.reason, group.sight) = (0, 0),
     }
 }
 

@@ -125,10 +125,12 @@ impl Cells {
         usize::from(old) != code
     }
 
-    /// The blocks with changes since this was last asked.
+    /// The blocks with changes since this was last asked, in order.
     pub(crate) fn take_changed(&mut self) -> Vec<usize> {
-        self.changed.iter().for_each(|block| self.is_changed[*block] = false);
-        std::mem::take(&mut self.changed)
+        let mut changed = std::mem::take(&mut self.changed);
+        changed.iter().for_each(|block| self.is_changed[*block] = false);
+        changed.sort_unstable();
+        changed
     }
 
     /// ρ of all cells, bordered.

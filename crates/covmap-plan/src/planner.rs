@@ -240,7 +240,7 @@ impl Planner {
     /// total probability of at least ½.
     pub fn cells_in_sight(&mut self, view_point: Cell) -> Vec<(usize, f32)> {
         let Some(index) = self.grid.index(view_point) else { return Vec::new() };
-        self.beams.refresh_sight(&self.cells, &ViewPoints::one(&self.grid, index));
+        self.beams.refresh_sight(&mut self.cells, &ViewPoints::one(&self.grid, index));
         self.beams.cells_in_sight(index)
     }
 
@@ -251,7 +251,7 @@ impl Planner {
         let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
         let mut reached = ViewPoints::new(&self.grid);
         costs.reached().for_each(|index| reached.insert(index));
-        self.beams.refresh_sight(&self.cells, &reached);
+        self.beams.refresh_sight(&mut self.cells, &reached);
         let trapped = costs.reached().all(|i| self.measured.is_near(i, from));
         let mut indices = reached.indices(|group| self.beams.reasons(group));
         indices.retain(|i| trapped || !self.measured.is_spent(*i));
@@ -269,7 +269,7 @@ impl Planner {
         let is_cut_off = |i: usize| self.traversable.at(i) && here.cost(i).is_none();
         let mut wanted = ViewPoints::new(&self.grid);
         (0..self.grid.len()).filter(|i| is_cut_off(*i)).for_each(|i| wanted.insert(i));
-        self.beams.refresh_sight(&self.cells, &wanted);
+        self.beams.refresh_sight(&mut self.cells, &wanted);
         let is_candidate =
             |i: usize| is_cut_off(i) && !self.measured.is_spent(i) && self.beams.has_reason(i);
         let least = ROOM * self.traversable.body_cells();

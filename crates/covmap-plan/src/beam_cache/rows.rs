@@ -2,9 +2,7 @@
 
 use super::{Group, State};
 use crate::cells::Cells;
-use crate::gain::basis::Basis;
 use crate::gain::bound::Potentials;
-use crate::gain::evidence::Prior;
 use crate::gain::sweep::{Row, Unit};
 use crate::look_ahead::{Ahead, Cone};
 use covmap::lanes::{LANES, Lanes};
@@ -55,28 +53,6 @@ impl WithSimd for Sight<'_> {
             groups[i].sight = states.iter().fold(u16::MAX, |all, s| all & s.sight & s.reason);
             groups[i].has_reason = states.iter().fold(0, |any, s| any | s.has_reason);
         }
-    }
-}
-
-/// Evaluates what is kept of the gains in a changed block of cells: those of the basis, and the
-/// potentials.
-pub(super) struct Changed<'a> {
-    pub(super) prior: Prior<'a>,
-    pub(super) basis: &'a Basis,
-    pub(super) potentials: &'a Option<Potentials>,
-}
-
-impl WithSimd for Changed<'_> {
-    type Output = (Vec<Lanes>, Vec<Lanes>);
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        let (mut gains, mut of_families) = (Vec::new(), Vec::new());
-        self.basis.evaluate(&self.prior, &mut gains);
-        if let Some(potentials) = self.potentials {
-            potentials.evaluate(&self.prior, &mut of_families);
-        }
-        (gains, of_families)
     }
 }
 

@@ -7,12 +7,17 @@
 
 use super::evidence::{Evidence, Prior, Reading};
 use super::interpolation::Probes;
+use crate::cells::Cells;
 use covmap::lanes::{LANES, Lanes};
+use pulp::Arch;
+use rayon::prelude::*;
 
 /// The gain of a mixture may be off by so much of what an interpolated one may.
 const SHARE: f64 = 0.5;
 /// With more readings than this a mixture takes more memory than it is worth.
 const MOST: usize = 24;
+/// So many blocks of cells are looked through by one thread.
+const BLOCKS: usize = 64;
 
 /// An imagined reading: how its gain is found.
 #[derive(Debug, Clone)]
@@ -70,18 +75,25 @@ impl Basis {
         self.gains = vec![[0.0; LANES]; blocks * self.readings.len()];
     }
 
-    /// Computes the gains of the basis in a block of cells.
-    #[inline(always)]
-    pub(crate) fn evaluate(&self, prior: &Prior<'_>, out: &mut Vec<Lanes>) {
-        for reading in &self.readings {
-            out.push(prior.gain(reading));
-        }
-    }
-
-    /// Keeps the gains of the basis in a block of cells.
-    pub(crate) fn keep(&mut self, block: usize, gains: &[Lanes]) {
-        let count = self.readings.len();
-        self.gains[block * count..(block + 1) * count].copy_from_slice(gains);
+    /// Evaluates the basis in blocks of cells that changed, given in order.
+    pub(crate) fn update(&mut self, arch: Arch, cells: &Cells, changed: &[usize]) {
+        let Self { readings, gains } = self;
+        let portions = gains.par_chunks_mut((readings.len() * BLOCKS).max(1)).enumerate();
+        portions.for_each(|(portion, gains)| {
+            let place = |block: usize| changed.partition_point(|changed| *changed < block);
+            let first = portion * BLOCKS;
+            for block in &changed[place(first)..place(first + BLOCKS)] {
+                let gains = &mut gains[(block - first) * readings.len()..];
+                arch.dispatch(
+                    #[inline(always)]
+                    || {
+                        let prior = cells.block(*block);
+                        let all = gains.iter_mut().zip(readings.iter());
+                        all.for_each(|(gain, reading)| *gain = prior.gain(reading));
+                    },
+                );
+            }
+        });
     }
 
     /// The gain of a reading in every cell of a block.

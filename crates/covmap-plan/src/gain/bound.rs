@@ -20,6 +20,8 @@ use crate::view_points::groups;
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
 use covmap_model::{Outcome, SensorModel};
+use pulp::Arch;
+use rayon::prelude::*;
 
 /// Distances up to the usable range are put into so many bands.
 const BANDS: usize = 4;
@@ -79,32 +81,21 @@ impl Potentials {
         Self { grid, families, bands, rasters }
     }
 
-    /// Computes the potentials of a block of cells, family by family.
-    #[inline(always)]
-    pub(crate) fn evaluate(&self, prior: &Prior<'_>, out: &mut Vec<Lanes>) {
-        for family in &self.families {
-            let mut potential = [0.0; LANES];
-            for reading in &family.readings {
-                let gain = prior.gain(reading);
-                for (potential, gain) in potential.iter_mut().zip(gain) {
-                    *potential = if gain > *potential { gain } else { *potential };
-                }
+    /// Computes the potentials of blocks of cells that changed.
+    pub(crate) fn update(&mut self, arch: Arch, cells: &Cells, changed: &[usize]) {
+        let (width, per_row) = (self.grid.width(), groups(&self.grid));
+        let families = self.families.par_iter().zip(&mut self.rasters);
+        families.filter(|(family, _)| !family.readings.is_empty()).for_each(|(family, raster)| {
+            for block in changed {
+                let (x, y) = (block % per_row * LANES, block / per_row);
+                let (at, count) = (cells.bordered(y * width + x), LANES.min(width - x));
+                let potential = arch.dispatch(
+                    #[inline(always)]
+                    || family.potential(&cells.block(*block)),
+                );
+                raster[at..at + count].copy_from_slice(&potential[..count]);
             }
-            for (potential, changeable) in potential.iter_mut().zip(prior.changeable) {
-                *potential = changeable * (*potential * family.margin + family.slack);
-            }
-            out.push(potential);
-        }
-    }
-
-    /// Keeps the potentials of a block of cells.
-    pub(crate) fn keep(&mut self, cells: &Cells, block: usize, potentials: &[Lanes]) {
-        let per_row = groups(&self.grid);
-        let (x, y) = (block % per_row * LANES, block / per_row);
-        let count = LANES.min(self.grid.width() - x);
-        let at = cells.bordered(y * self.grid.width() + x);
-        let used = self.rasters.iter_mut().zip(potentials).filter(|(raster, _)| !raster.is_empty());
-        used.for_each(|(raster, p)| raster[at..at + count].copy_from_slice(&p[..count]));
+        });
     }
 
     /// An upper bound of a beam's part of E\[I\] from neighbouring view-points.
@@ -146,6 +137,23 @@ impl Potentials {
 }
 
 impl Family {
+    /// The potential of the cells of a block.
+    #[inline(always)]
+    fn potential(&self, prior: &Prior<'_>) -> Lanes {
+        let mut potential = [0.0; LANES];
+        for reading in &self.readings {
+            let gain = prior.gain(reading);
+            for lane in 0..LANES {
+                potential[lane] =
+                    if gain[lane] > potential[lane] { gain[lane] } else { potential[lane] };
+            }
+        }
+        for lane in 0..LANES {
+            potential[lane] = prior.changeable[lane] * (potential[lane] * self.margin + self.slack);
+        }
+        potential
+    }
+
     /// The corners of the family, and as few of the other members as the margin allows: one after
     /// the other the one that exceeds the potential by most.
     fn new(members: Members, probes: &Probes) -> Self {
