@@ -245,8 +245,7 @@ impl BeamCache {
                     ahead,
                 })
             };
-            let rows: Vec<Row> =
-                rows.par_iter().with_min_len(ROWS).map_init(Ahead::new, look).collect();
+            let rows: Vec<Row> = rows.par_iter().map_init(Ahead::new, look).collect();
             let gains = self.sweep.run(self.arch, cells, &rows);
             for (row, gains) in rows.iter().zip(gains) {
                 for (unit, gains) in row.units.iter().zip(gains) {

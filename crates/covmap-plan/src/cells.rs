@@ -24,6 +24,8 @@ pub(crate) struct Cells {
     reflection_of: Vec<f64>,
     /// Bordered: ρ.
     reflections: Vec<f64>,
+    /// Bordered: how many of the [`LANES`] cells from here on reflect anything.
+    reflecting: Vec<u8>,
     /// In blocks of [`LANES`] neighbouring cells: entropies \[nats\], and 1 for a cell that a
     /// measurement can change, else 0.
     entropies: Vec<Lanes>,
@@ -66,6 +68,7 @@ impl Cells {
             limits: vec![0.0; bordered],
             reflection_of,
             reflections: vec![0.0; bordered],
+            reflecting: vec![0; bordered],
             entropies: vec![none; blocks],
             changeable: vec![none; blocks],
             changed: Vec::new(),
@@ -119,7 +122,14 @@ impl Cells {
         #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
         (self.entropies[block][lane] = map.entropy(cell) as f32);
         let bordered = self.bordered(index);
-        self.reflections[bordered] = self.reflection_of[code];
+        let rho = self.reflection_of[code];
+        let old = std::mem::replace(&mut self.reflections[bordered], rho);
+        if (old > 0.0) != (rho > 0.0) {
+            // In the first row there is no border to the left if beams are short.
+            for count in &mut self.reflecting[(bordered + 1).saturating_sub(LANES)..=bordered] {
+                *count = if rho > 0.0 { *count + 1 } else { *count - 1 };
+            }
+        }
         #[allow(clippy::cast_possible_truncation, reason = "at most 67 codes")]
         let old = std::mem::replace(&mut self.codes[bordered], code as u8);
         usize::from(old) != code
@@ -136,6 +146,12 @@ impl Cells {
     /// ρ of all cells, bordered.
     pub(crate) fn reflections(&self) -> &[f64] {
         &self.reflections
+    }
+
+    /// Whether any of the [`LANES`] cells from a place in the bordered rasters on reflects.
+    #[inline(always)]
+    pub(crate) fn reflects(&self, bordered: usize) -> bool {
+        self.reflecting[bordered] > 0
     }
 
     /// Up to which distance each cell is a reason to measure, bordered \[m\].

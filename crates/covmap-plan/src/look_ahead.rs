@@ -112,12 +112,15 @@ impl Cone {
         *traced = [as_f64(rings); LANES];
         let mut survival = [1.0; LANES];
         for (k, ring) in self.beam.rings.iter().enumerate() {
-            let mut q = [0.0; LANES];
             let offsets = &self.offsets[ring.clone()];
-            for (offset, weight) in offsets.iter().zip(&self.beam.weights[ring.clone()]) {
-                let rho: &Wide = lanes(cells.reflections(), here, *offset);
-                for lane in 0..LANES {
-                    q[lane] += weight * rho[lane];
+            let reflects = |offset: &isize| cells.reflects(here.wrapping_add_signed(*offset));
+            let mut q = [0.0; LANES];
+            if offsets.iter().any(reflects) {
+                for (offset, weight) in offsets.iter().zip(&self.beam.weights[ring.clone()]) {
+                    let rho: &Wide = lanes(cells.reflections(), here, *offset);
+                    for lane in 0..LANES {
+                        q[lane] += weight * rho[lane];
+                    }
                 }
             }
             // In free space most rings reflect nothing: no echo from there.

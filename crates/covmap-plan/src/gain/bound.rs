@@ -27,7 +27,7 @@ use rayon::prelude::*;
 const BANDS: usize = 4;
 /// No member of a family gains more than this times the largest of those that are evaluated, in
 /// any of the probes.
-const MARGIN: f64 = 1.15;
+const MARGIN: f64 = 1.05;
 /// Histograms that were not probed may exceed that by this factor.
 const CAUTION: f64 = 1.02;
 /// What is added to every potential, in units of a gain that matters: where gains nearly cancel, a
