@@ -5,8 +5,10 @@
 pub(crate) mod basis;
 pub(crate) mod bound;
 pub(crate) mod evidence;
+mod front;
 mod interpolation;
 mod rings;
+mod span;
 mod sums;
 pub(crate) mod sweep;
 

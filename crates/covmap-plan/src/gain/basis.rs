@@ -7,15 +7,15 @@
 
 use super::evidence::{Evidence, Prior, Reading};
 use super::interpolation::Probes;
+use super::span::Span;
 use crate::cells::Cells;
 use covmap::lanes::{LANES, Lanes};
 use pulp::Arch;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// The gain of a mixture may be off by so much of what an interpolated one may.
 const SHARE: f64 = 0.5;
-/// With more readings than this a mixture takes more memory than it is worth.
-const MOST: usize = 24;
 /// So many blocks of cells are looked through by one thread.
 const BLOCKS: usize = 64;
 
@@ -28,6 +28,16 @@ pub(crate) enum Imagined {
     Mixed { first: usize, weights: Vec<f32> },
 }
 
+/// Many readings as mixtures of a part of the basis, to be taken one after the other.
+pub(super) struct Mixtures {
+    first: usize,
+    /// For each reading the weight of every member.
+    weights: Vec<Vec<f64>>,
+    /// For each reading the gains of all probes, in units of what they may be off.
+    gains: Vec<Vec<f64>>,
+    taken: usize,
+}
+
 /// The readings that others are mixtures of, and their gains.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Basis {
@@ -37,37 +47,19 @@ pub(crate) struct Basis {
 }
 
 impl Basis {
-    /// Finds how the gains of many readings are to be found: as mixtures of a few, which join the
-    /// basis, if the gains of all probes allow it.
-    ///
-    /// One after the other that reading joins whose gain is farthest from what those before it
-    /// span.
-    pub(super) fn imagine(&mut self, readings: &[&Evidence], probes: &Probes) -> Vec<Imagined> {
-        let mut rest = probes.in_tolerances(readings);
-        let mut parts = vec![Vec::new(); readings.len()];
-        let mut members: Vec<usize> = Vec::new();
-        loop {
-            let far = |rest: &Vec<f64>| rest.iter().fold(0.0, |far: f64, x| far.max(x.abs()));
-            let farthest = rest.iter().map(far).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((member, _)) = farthest.filter(|(_, far)| *far > SHARE) else { break };
-            if members.len() == MOST {
-                return readings.iter().map(|e| Imagined::Evaluated(e.reading())).collect();
-            }
-            members.push(member);
-            let length = dot(&rest[member], &rest[member]).sqrt();
-            let direction: Vec<f64> = rest[member].iter().map(|x| x / length).collect();
-            for (rest, parts) in rest.iter_mut().zip(&mut parts) {
-                let part = dot(rest, &direction);
-                rest.iter_mut().zip(&direction).for_each(|(x, d)| *x -= part * d);
-                parts.push(part);
-            }
-        }
+    /// Takes some of these readings into the basis, as many as all of them need; none if that are
+    /// more than `most`.
+    pub(super) fn extend(
+        &mut self,
+        readings: &[&Evidence],
+        probes: &Probes,
+        most: usize,
+    ) -> Option<Mixtures> {
+        let gains = probes.in_tolerances(readings);
+        let Span { members, weights } = Span::of(&gains, SHARE, most)?;
         let first = self.readings.len();
         self.readings.extend(members.iter().map(|member| readings[*member].reading()));
-        let of_members: Vec<&Vec<f64>> = members.iter().map(|member| &parts[*member]).collect();
-        let mixed =
-            |parts: &Vec<f64>| Imagined::Mixed { first, weights: weights(&of_members, parts) };
-        parts.iter().map(mixed).collect()
+        Some(Mixtures { first, weights, gains, taken: 0 })
     }
 
     /// Makes room for the gains of so many blocks of cells.
@@ -116,19 +108,38 @@ impl Basis {
     }
 }
 
-/// What every member weighs in a reading, by their parts along the directions that the members
-/// brought in one after the other: a member has no part along later ones.
-fn weights(members: &[&Vec<f64>], wanted: &[f64]) -> Vec<f32> {
-    let mut weights = vec![0.0; members.len()];
-    for direction in (0..members.len()).rev() {
-        let later = direction + 1..members.len();
-        let taken: f64 = later.map(|n| weights[n] * members[n][direction]).sum();
-        weights[direction] = (wanted[direction] - taken) / members[direction][direction];
+impl Mixtures {
+    /// The places of the next so many readings.
+    pub(super) fn take(&mut self, count: usize) -> Range<usize> {
+        self.taken += count;
+        self.taken - count..self.taken
     }
-    #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-    weights.into_iter().map(|w: f64| w as f32).collect()
+
+    /// The next reading.
+    pub(super) fn next(&mut self) -> Imagined {
+        let place = self.take(1).start;
+        self.sum(&[(1.0, place)])
+    }
+
+    /// The gains of all probes by a sum of readings, each times a factor, in units of what they
+    /// may be off.
+    pub(super) fn gains(&self, terms: &[(f64, usize)]) -> Vec<f64> {
+        sum(&self.gains, terms)
+    }
+
+    /// A sum of readings, each times a factor.
+    pub(super) fn sum(&self, terms: &[(f64, usize)]) -> Imagined {
+        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
+        let weights = sum(&self.weights, terms).into_iter().map(|weight| weight as f32).collect();
+        Imagined::Mixed { first: self.first, weights }
+    }
 }
 
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a * b).sum()
+/// A sum of vectors, each times a factor.
+fn sum(vectors: &[Vec<f64>], terms: &[(f64, usize)]) -> Vec<f64> {
+    let mut sum = vec![0.0; vectors.first().map_or(0, Vec::len)];
+    for (factor, place) in terms {
+        sum.iter_mut().zip(&vectors[*place]).for_each(|(sum, x)| *sum += factor * x);
+    }
+    sum
 }

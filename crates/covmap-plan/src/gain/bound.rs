@@ -27,7 +27,7 @@ use rayon::prelude::*;
 const BANDS: usize = 4;
 /// No member of a family gains more than this times the largest of those that are evaluated, in
 /// any of the probes.
-const MARGIN: f64 = 1.05;
+const MARGIN: f64 = 1.15;
 /// Histograms that were not probed may exceed that by this factor.
 const CAUTION: f64 = 1.02;
 /// What is added to every potential, in units of a gain that matters: where gains nearly cancel, a
@@ -148,8 +148,8 @@ impl Family {
                     if gain[lane] > potential[lane] { gain[lane] } else { potential[lane] };
             }
         }
-        for lane in 0..LANES {
-            potential[lane] = prior.changeable[lane] * (potential[lane] * self.margin + self.slack);
+        for (potential, changeable) in potential.iter_mut().zip(prior.changeable) {
+            *potential = changeable * (*potential * self.margin + self.slack);
         }
         potential
     }

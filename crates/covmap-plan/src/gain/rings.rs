@@ -5,15 +5,20 @@
 //! smooth in δ and in d, so that a few readings stand for all ranges ([`Nodes`]); behind it is
 //! smooth in δ; at the end every distance is evaluated by itself.
 
-use super::basis::{Basis, Imagined};
+use super::basis::{Basis, Imagined, Mixtures};
 use super::evidence::Evidence;
+use super::front::{Front, Lattice, to_f32};
 use super::interpolation::{Nodes, Probes};
 use crate::{BeamStencil, Stencil};
-use covmap::lanes::TOGETHER;
 use covmap_model::{Linear, Outcome, SensorModel};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+/// Fewer readings in front may leave a gain off by so much of what an interpolated one may.
+const REDUCED: f64 = 0.3;
+/// If readings of the end are mixtures of more than this, they are evaluated: to keep the gains of
+/// so many for every cell would take more memory than it is worth.
+const MOST_AT_END: usize = 24;
 /// See [`Builder::leniency`].
 const MOST_LENIENT: f64 = 10.0;
 
@@ -27,23 +32,6 @@ pub(crate) struct Ring {
     pub(crate) no_echo: Option<Source>,
     /// The cells of each beam.
     pub(crate) cells: Vec<Range<usize>>,
-}
-
-/// The outcomes from beyond the ring: the gain of each is a mixture of those at some ranges,
-/// each of these of the gains at the same few distances. Its readings are the ring's first,
-/// range by range.
-#[derive(Debug, Clone)]
-pub(crate) struct Front {
-    /// The nearest of the outcomes.
-    pub(crate) first: usize,
-    /// How many ranges, and how many distances.
-    pub(crate) ranges: usize,
-    pub(crate) distances: usize,
-    /// For [`TOGETHER`] ranges their weights in every outcome from the nearest on; 0 past the
-    /// last range.
-    pub(crate) weights: Vec<Vec<[f32; TOGETHER]>>,
-    /// For each beam, for each of its cells, the weight of every distance.
-    pub(crate) of_cells: Vec<Vec<f32>>,
 }
 
 /// From which readings the gains of a ring's cells are taken.
@@ -75,18 +63,42 @@ pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> (Vec<Ring>, Basis
             .all(|beam| members(beam, *ring, model.resolution()).start == beam.cells.len())
     });
     let build = |ring| Builder::new(model, stencil, &probes, ring).build();
-    let (mut rings, readings): (Vec<Ring>, Vec<_>) = (0..count.unwrap_or(0)).map(build).unzip();
+    let built: Vec<Built> = (0..count.unwrap_or(0)).map(build).collect();
     let mut basis = Basis::default();
-    let mut imagined = SIDES.map(|side| {
-        let of_side = readings.iter().flatten().filter(|(s, _)| *s == side);
-        let of_side: Vec<&Evidence> = of_side.map(|(_, evidence)| evidence).collect();
-        basis.imagine(&of_side, &probes).into_iter()
-    });
-    for (ring, readings) in rings.iter_mut().zip(&readings) {
-        let imagined = readings.iter().filter_map(|(side, _)| imagined[*side as usize].next());
-        ring.readings = imagined.collect();
-    }
-    (rings, basis)
+    let mut mixed = |side, most| {
+        let readings = built.iter().flat_map(|built| &built.readings);
+        let readings: Vec<&Evidence> =
+            readings.filter(|(s, _)| *s == side).map(|(_, evidence)| evidence).collect();
+        basis.extend(&readings, &probes, most)
+    };
+    let mut front = mixed(Side::Front, usize::MAX);
+    let mut end = mixed(Side::End, MOST_AT_END);
+    let mut behind = mixed(Side::Behind, usize::MAX);
+    let mut nowhere = mixed(Side::Nowhere, usize::MAX);
+    let ring = |Built { mut ring, readings, lattice }: Built| {
+        for (side, evidence) in &readings {
+            let mixtures = match side {
+                Side::Front => continue,
+                Side::End => &mut end,
+                Side::Behind => &mut behind,
+                Side::Nowhere => &mut nowhere,
+            };
+            let evaluated = || Imagined::Evaluated(evidence.reading());
+            ring.readings.push(mixtures.as_mut().map_or_else(evaluated, Mixtures::next));
+        }
+        let lattice = lattice.zip(front.as_mut());
+        ring.front = lattice.map(|(lattice, front)| lattice.reduce(front, &mut ring.readings));
+        ring
+    };
+    (built.into_iter().map(ring).collect(), basis)
+}
+
+/// A ring before the readings of all rings are known.
+struct Built {
+    ring: Ring,
+    /// With where they end.
+    readings: Vec<(Side, Evidence)>,
+    lattice: Option<Lattice>,
 }
 
 /// A beam's cells in a ring: every cell is in one, also where rounding leaves it out of the rings
@@ -112,9 +124,6 @@ enum Side {
     Behind,
     Nowhere,
 }
-
-/// All sides, in order.
-const SIDES: [Side; 4] = [Side::Front, Side::End, Side::Behind, Side::Nowhere];
 
 struct Builder<'a> {
     model: &'a SensorModel,
@@ -148,19 +157,20 @@ impl<'a> Builder<'a> {
         Self { leniency, model, stencil, probes, cells, distances, readings: Vec::new() }
     }
 
-    fn build(mut self) -> (Ring, Vec<(Side, Evidence)>) {
+    fn build(mut self) -> Built {
         let ranges = self.stencil.ranges.len();
         let is_near = |k: &usize| self.any_cell(*k, |d| self.side(d, *k) != Side::Front);
         let near: Vec<usize> = (0..ranges).filter(is_near).collect();
         let first = near.last().map_or(0, |k| k + 1);
-        let front = (first < ranges && !self.distances.is_empty()).then(|| self.front(first));
         let near = near.into_iter().map(|k| (k, self.near(k))).collect();
         let reaches_no_echo = self.any_cell(ranges, |_| true);
         let no_echo = reaches_no_echo.then(|| {
             let model = self.model;
             self.smooth(ranges, Side::Nowhere, |d| Evidence::new(model, d, Outcome::NoEcho))
         });
-        (Ring { readings: Vec::new(), front, near, no_echo, cells: self.cells }, self.readings)
+        let lattice = (first < ranges && !self.distances.is_empty()).then(|| self.front(first));
+        let ring = Ring { readings: Vec::new(), front: None, near, no_echo, cells: self.cells };
+        Built { ring, readings: self.readings, lattice }
     }
 
     fn side(&self, cell_distance: f64, k: usize) -> Side {
@@ -189,7 +199,7 @@ impl<'a> Builder<'a> {
     }
 
     /// All outcomes from the `first` on.
-    fn front(&mut self, first: usize) -> Front {
+    fn front(&mut self, first: usize) -> Lattice {
         let (model, probes) = (self.model, (self.probes, self.leniency));
         let ranges = &self.stencil.ranges[first..];
         let (nearest, farthest) = (self.distances[0], self.distances[self.distances.len() - 1]);
@@ -207,14 +217,13 @@ impl<'a> Builder<'a> {
                 self.readings.push((Side::Front, at(*distance, *range)));
             }
         }
-        let weight = |row: &[f64], node: usize| row.get(node).map_or(0.0, |w| to_f32(*w));
-        let mixed = |first: usize| {
-            let row = |row: &Vec<f64>| std::array::from_fn(|i| weight(row, first + i));
-            in_range.weights.iter().map(row).collect()
-        };
-        let weights = (0..in_range.at.len()).step_by(TOGETHER).map(mixed).collect();
-        let of_cells = self.of_cells(&in_distance, first);
-        Front { first, ranges: in_range.at.len(), distances, weights, of_cells }
+        Lattice {
+            first,
+            of_outcomes: in_range.weights,
+            of_cells: self.of_cells(&in_distance, first),
+            distances,
+            tolerance: REDUCED * self.leniency,
+        }
     }
 
     /// One outcome that ends in the ring, or before it.
@@ -244,21 +253,21 @@ impl<'a> Builder<'a> {
         for at in &nodes.at {
             self.readings.push((side, evidence(*at)));
         }
-        Source { first, count, shares: Shares::Weights(self.of_cells(&nodes, k)) }
+        let narrow = |weights: Vec<Vec<f64>>| weights.into_iter().flatten().map(to_f32).collect();
+        let weights = self.of_cells(&nodes, k).into_iter().map(narrow).collect();
+        Source { first, count, shares: Shares::Weights(weights) }
     }
 
     /// For each beam and each of its cells what every node weighs; nothing in cells that the
     /// outcome does not cover.
-    fn of_cells(&self, nodes: &Nodes, k: usize) -> Vec<Vec<f32>> {
-        let count = nodes.at.len();
-        let mut weights: Vec<Vec<f32>> =
-            self.cells.iter().map(|cells| vec![0.0; cells.len() * count]).collect();
+    fn of_cells(&self, nodes: &Nodes, k: usize) -> Vec<Vec<Vec<f64>>> {
+        let none = vec![0.0; nodes.at.len()];
+        let mut weights: Vec<Vec<Vec<f64>>> =
+            self.cells.iter().map(|cells| vec![none.clone(); cells.len()]).collect();
         for (beam, i) in self.covered(k) {
             let distance = self.stencil.beams[beam].cells[i].cell_distance;
             let point = self.distances.partition_point(|d| *d < distance);
-            let at = (i - self.cells[beam].start) * count;
-            let row = nodes.weights[point].iter().map(|w| to_f32(*w));
-            weights[beam][at..at + count].iter_mut().zip(row).for_each(|(to, w)| *to = w);
+            weights[beam][i - self.cells[beam].start].clone_from(&nodes.weights[point]);
         }
         weights
     }
@@ -267,10 +276,4 @@ impl<'a> Builder<'a> {
 /// γ over the range is `slope · (range + shift)`: gains are smooth in its logarithm.
 fn shift(gamma: &Linear, distance: f64) -> Option<f64> {
     (gamma.per_range > 0.0).then(|| gamma.at(distance, 0.0) / gamma.per_range)
-}
-
-fn to_f32(x: f64) -> f32 {
-    #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-    let x = x as f32;
-    x
 }

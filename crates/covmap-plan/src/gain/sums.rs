@@ -1,6 +1,7 @@
 //! Sums of gains over the cells of a beam, [`LANES`] view-points side by side.
 
-use super::rings::{Front, Shares, Source};
+use super::front::Front;
+use super::rings::{Shares, Source};
 use covmap::lanes::{LANES, Lanes, TOGETHER};
 
 /// How much each of some nodes weighs in all of a unit's outcomes from the `first` on together.
@@ -22,7 +23,7 @@ pub(super) fn mix_outcomes<'a>(
 }
 
 impl Front {
-    /// Adds the gains of a beam's cells, given the shares of the ranges.
+    /// Adds the gains of a beam's cells, given the shares of the readings.
     #[inline(always)]
     pub(super) fn add(
         &self,
@@ -33,38 +34,13 @@ impl Front {
         planes: &[f32],
         (here, stride): (usize, usize),
     ) {
-        let of_cells = &self.of_cells[beam];
-        let per_range = self.distances * stride;
-        for (some, shares) in shares.iter().enumerate() {
-            let first = here + some * TOGETHER * per_range;
-            let ranges = (self.ranges - some * TOGETHER).min(TOGETHER);
-            let strides = (stride, per_range);
-            let sums = match (self.distances, ranges) {
-                (1, 1) => mix_ranges::<1, 1>(of_cells, cells, planes, first, strides),
-                (1, 2) => mix_ranges::<1, 2>(of_cells, cells, planes, first, strides),
-                (1, 3) => mix_ranges::<1, 3>(of_cells, cells, planes, first, strides),
-                (1, _) => mix_ranges::<1, 4>(of_cells, cells, planes, first, strides),
-                (2, 1) => mix_ranges::<2, 1>(of_cells, cells, planes, first, strides),
-                (2, 2) => mix_ranges::<2, 2>(of_cells, cells, planes, first, strides),
-                (2, 3) => mix_ranges::<2, 3>(of_cells, cells, planes, first, strides),
-                (2, _) => mix_ranges::<2, 4>(of_cells, cells, planes, first, strides),
-                (3, 1) => mix_ranges::<3, 1>(of_cells, cells, planes, first, strides),
-                (3, 2) => mix_ranges::<3, 2>(of_cells, cells, planes, first, strides),
-                (3, 3) => mix_ranges::<3, 3>(of_cells, cells, planes, first, strides),
-                (3, _) => mix_ranges::<3, 4>(of_cells, cells, planes, first, strides),
-                (distances, ranges) => {
-                    let mut sums = [[0.0; LANES]; TOGETHER];
-                    for (offset, weights) in cells.iter().zip(of_cells.chunks_exact(distances)) {
-                        let at = first.wrapping_add_signed(*offset);
-                        for (range, sum) in sums.iter_mut().enumerate().take(ranges) {
-                            for (i, weight) in weights.iter().enumerate() {
-                                let at = at + range * per_range + i * stride;
-                                add(sum, lanes(planes, at), *weight);
-                            }
-                        }
-                    }
-                    sums
-                }
+        for (some, (factors, shares)) in self.factors[beam].iter().zip(shares).enumerate() {
+            let first = here + (self.base + some * TOGETHER) * stride;
+            let sums = match self.count - some * TOGETHER {
+                1 => sum_some::<1>(factors, cells, planes, first, stride),
+                2 => sum_some::<2>(factors, cells, planes, first, stride),
+                3 => sum_some::<3>(factors, cells, planes, first, stride),
+                _ => sum_some::<TOGETHER>(factors, cells, planes, first, stride),
             };
             for (share, sum) in shares.iter().zip(&sums) {
                 add_product(gain, share, sum);
@@ -73,26 +49,24 @@ impl Front {
     }
 }
 
-/// Σ of the gains of some cells at each of R ranges, with D weights for each cell; 0 for the
-/// ranges from R on.
+/// Σ of the gains of some cells by each of R readings, with a factor for each; 0 for the readings
+/// from R on.
 #[inline(always)]
-fn mix_ranges<const D: usize, const R: usize>(
-    of_cells: &[f32],
+fn sum_some<const R: usize>(
+    factors: &[[f32; TOGETHER]],
     cells: &[isize],
     planes: &[f32],
     first: usize,
-    (stride, per_range): (usize, usize),
+    stride: usize,
 ) -> [Lanes; TOGETHER] {
     let mut sums = [[0.0; LANES]; R];
-    for (offset, weights) in cells.iter().zip(of_cells.as_chunks::<D>().0) {
+    for (offset, factors) in cells.iter().zip(factors) {
         let at = first.wrapping_add_signed(*offset);
-        for (range, sum) in sums.iter_mut().enumerate() {
-            for (i, weight) in weights.iter().enumerate() {
-                add(sum, lanes(planes, at + range * per_range + i * stride), *weight);
-            }
+        for (reading, sum) in sums.iter_mut().enumerate() {
+            add(sum, lanes(planes, at + reading * stride), factors[reading]);
         }
     }
-    std::array::from_fn(|range| if range < R { sums[range] } else { [0.0; LANES] })
+    std::array::from_fn(|reading| if reading < R { sums[reading] } else { [0.0; LANES] })
 }
 
 impl Source {

@@ -298,7 +298,7 @@ fn asks(ring: &Ring, stencil: &Stencil) -> Asks {
     let all = |beam| runs(cells(beam).iter().map(|cell| (cell, 0)));
     Asks {
         cells: (0..stencil.beams.len()).map(all).collect(),
-        front: ring.front.as_ref().map_or(0, |front| bits(0..front.ranges * front.distances)),
+        front: ring.front.as_ref().map_or(0, |f| bits(f.base..f.base + f.count)),
         near: ring.near.iter().map(|(_, source)| of_source(source)).collect(),
         no_echo: ring.no_echo.as_ref().map_or(0, |source| of_source(source).0),
     }

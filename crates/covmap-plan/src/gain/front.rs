@@ -1,0 +1,104 @@
+//! The outcomes that end beyond a ring.
+//!
+//! Their gains are interpolated between a few ranges and a few distances. Along the distance they
+//! are taken apart into polynomials: how a gain changes within a ring is much smaller than the
+//! gain, so that its coefficients need fewer ranges.
+
+use super::basis::{Imagined, Mixtures};
+use super::span::Span;
+use covmap::lanes::TOGETHER;
+use std::f64::consts::PI;
+
+/// The gain of each outcome in a cell is a sum over some readings, each with a weight by the
+/// outcome and a factor by the cell.
+#[derive(Debug, Clone)]
+pub(crate) struct Front {
+    /// The nearest of the outcomes.
+    pub(crate) first: usize,
+    /// The first of the readings, and how many there are.
+    pub(crate) base: usize,
+    pub(crate) count: usize,
+    /// For [`TOGETHER`] readings their weights in every outcome from the nearest on; 0 past the
+    /// last one.
+    pub(crate) weights: Vec<Vec<[f32; TOGETHER]>>,
+    /// For each beam, for [`TOGETHER`] readings, their factors in each of its cells.
+    pub(crate) factors: Vec<Vec<Vec<[f32; TOGETHER]>>>,
+}
+
+/// The outcomes as they are interpolated: by some ranges and distances.
+pub(super) struct Lattice {
+    pub(super) first: usize,
+    /// For each outcome the weight of every range.
+    pub(super) of_outcomes: Vec<Vec<f64>>,
+    /// For each beam, for each of its cells, the weight of every distance.
+    pub(super) of_cells: Vec<Vec<Vec<f64>>>,
+    /// How many distances.
+    pub(super) distances: usize,
+    /// What a gain may be off.
+    pub(super) tolerance: f64,
+}
+
+impl Lattice {
+    /// As few readings as allowed in place of those for each range, and for it each distance, that
+    /// are next among all. They are added to those of the ring.
+    pub(super) fn reduce(self, front: &mut Mixtures, readings: &mut Vec<Imagined>) -> Front {
+        let Self { first, of_outcomes, of_cells, distances, tolerance } = self;
+        let base = readings.len();
+        let ranges = of_outcomes.first().map_or(0, Vec::len);
+        let places = front.take(ranges * distances);
+        let mut weights: Vec<Vec<f64>> = vec![Vec::new(); of_outcomes.len()];
+        let mut factors: Vec<Vec<Vec<f64>>> =
+            of_cells.iter().map(|cells| vec![Vec::new(); cells.len()]).collect();
+        for degree in 0..distances {
+            let cosines = cosines(degree, distances);
+            let coefficient = |range: usize| {
+                let scale = if degree == 0 { 1.0 } else { 2.0 } / to_f64(distances);
+                let at = places.start + range * distances;
+                cosines.iter().zip(at..).map(|(c, at)| (scale * c, at)).collect::<Vec<_>>()
+            };
+            let vector = |range| front.gains(&coefficient(range));
+            let vectors: Vec<Vec<f64>> = (0..ranges).map(vector).collect();
+            let Some(span) = Span::of(&vectors, tolerance, ranges) else { continue };
+            for (i, member) in span.members.iter().enumerate() {
+                readings.push(front.sum(&coefficient(*member)));
+                for (weights, of_ranges) in weights.iter_mut().zip(&of_outcomes) {
+                    let of_range = |(weight, of): (&f64, &Vec<f64>)| weight * of[i];
+                    weights.push(of_ranges.iter().zip(&span.weights).map(of_range).sum());
+                }
+                let of_cells = of_cells.iter().flatten();
+                for (factors, of_distances) in factors.iter_mut().flatten().zip(of_cells) {
+                    factors.push(of_distances.iter().zip(&cosines).map(|(w, c)| w * c).sum());
+                }
+            }
+        }
+        let count = readings.len() - base;
+        let factors = factors.iter().map(|of_cells| together(of_cells, count)).collect();
+        Front { first, base, count, weights: together(&weights, count), factors }
+    }
+}
+
+/// A Chebyshev polynomial at as many nodes.
+fn cosines(degree: usize, nodes: usize) -> Vec<f64> {
+    let cosine = |node| libm::cos(PI * to_f64(degree) * (to_f64(node) + 0.5) / to_f64(nodes));
+    (0..nodes).map(cosine).collect()
+}
+
+/// Rows of so many numbers, cut into pieces of [`TOGETHER`].
+fn together(rows: &[Vec<f64>], count: usize) -> Vec<Vec<[f32; TOGETHER]>> {
+    let number = |row: &Vec<f64>, i: usize| row.get(i).map_or(0.0, |x| to_f32(*x));
+    let piece =
+        |first| rows.iter().map(|row| std::array::from_fn(|i| number(row, first + i))).collect();
+    (0..count).step_by(TOGETHER).map(piece).collect()
+}
+
+pub(super) fn to_f32(x: f64) -> f32 {
+    #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
+    let x = x as f32;
+    x
+}
+
+fn to_f64(count: usize) -> f64 {
+    #[allow(clippy::cast_precision_loss, reason = "few nodes")]
+    let count = count as f64;
+    count
+}
