@@ -361,6 +361,7 @@ fn portions<T>(rows: &[(usize, T)], most: usize, span: usize) -> Vec<&[(usize, T
 }
 
 #[cfg(test)]
+#[allow(clippy::cast_precision_loss, reason = "tests count few")]
 mod tests {
     use super::*;
     use covmap::{CoverageMap, Raster};
@@ -408,6 +409,49 @@ mod tests {
         let gains = (0..grid.len()).map(|index| cache.gain(index).to_bits()).collect();
         let reasons = (0..cache.groups.len()).map(|group| cache.reasons(group)).collect();
         (gains, cache.in_sight, reasons)
+    }
+
+    #[test]
+    fn gains_that_are_kept_are_those_of_a_fresh_cache() {
+        let parameters = PlannerParameters::standard();
+        let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1).unwrap();
+        let stencil = Stencil::new(&model, 0.1);
+        for (width, height) in [(1, 1), (1, 20), (17, 3), (43, 90)] {
+            let grid = Grid::new(Point2::new(-0.05, -0.05), 0.1, width, height).unwrap();
+            let fresh = || {
+                let cells = Cells::new(grid, 11, &stencil, &parameters);
+                let cache = BeamCache::new(&model, &stencil, &cells, grid, &parameters);
+                (cells, cache)
+            };
+            let mut map = CoverageMap::new(grid, 11).unwrap();
+            let (mut cells, mut cache) = fresh();
+            let last = height - 1;
+            // Rows that were outside of what is worked at are inside later, and back.
+            for (turn, rows) in
+                [0..1, last..height, height / 2..height / 2 + 1, 0..height, last..height, 0..1]
+                    .into_iter()
+                    .enumerate()
+            {
+                let pose = Isometry2::new(Vector2::new(0.0, 0.2 * turn as f64), 0.1);
+                let range = |i: usize| Range::Echo(0.5 + 0.07 * ((i * 7 + turn) % 24) as f64);
+                let scan = Scan { pose, time: 0.0, ranges: (0..24).map(range).collect() };
+                for change in integrate(&model, &mut map, &scan) {
+                    cells.update(&map, change.cell);
+                    cache.mark(grid.index(change.cell).unwrap(), Mark::Sight);
+                }
+                let mut wanted = ViewPoints::new(&grid);
+                (rows.start * width..rows.end * width).for_each(|index| wanted.insert(index));
+                cache.refresh_gain(&mut cells, &wanted);
+                let (mut fresh_cells, mut fresh_cache) = fresh();
+                for cell in grid.cells() {
+                    fresh_cells.update(&map, cell);
+                }
+                fresh_cache.refresh_gain(&mut fresh_cells, &wanted);
+                for index in rows.start * width..rows.end * width {
+                    assert_eq!(cache.gain(index).to_bits(), fresh_cache.gain(index).to_bits());
+                }
+            }
+        }
     }
 
     #[test]

@@ -125,7 +125,7 @@ impl Cells {
         let rho = self.reflection_of[code];
         let old = std::mem::replace(&mut self.reflections[bordered], rho);
         if (old > 0.0) != (rho > 0.0) {
-            // In the first row there is no border to the left if beams are short.
+            // At the very beginning of the raster there are fewer.
             for count in &mut self.reflecting[(bordered + 1).saturating_sub(LANES)..=bordered] {
                 *count = if rho > 0.0 { *count + 1 } else { *count - 1 };
             }
@@ -195,5 +195,42 @@ impl Cells {
     /// How far apart two rows lie in the bordered rasters.
     pub(crate) fn bordered_width(&self) -> usize {
         self.grid.width() + 2 * self.border
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use covmap_model::{ModelParameters, SensorModel, integrate, integrate_body};
+    use covmap_sonar::{Range, Scan, SonarRing};
+    use nalgebra::{Isometry2, Point2, Vector2};
+
+    #[test]
+    fn what_reflects_is_counted() {
+        let model = SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), 0.1).unwrap();
+        let stencil = Stencil::new(&model, 0.0);
+        let grid = Grid::new(Point2::new(-2.0, -1.0), 0.1, 41, 23).unwrap();
+        for unknown_reflection in [0.0, 0.3] {
+            let parameters =
+                PlannerParameters { unknown_reflection, ..PlannerParameters::standard() };
+            let mut map = CoverageMap::new(grid, 11).unwrap();
+            let mut cells = Cells::new(grid, 11, &stencil, &parameters);
+            for turn in 0..6u32 {
+                let at = Vector2::new(0.3 * f64::from(turn) - 1.0, 0.0);
+                let range = |i: u32| Range::Echo(0.4 + 0.05 * f64::from((i * 7 + turn) % 24));
+                let pose = Isometry2::new(at, 0.0);
+                let scan = Scan { pose, time: 0.0, ranges: (0..24).map(range).collect() };
+                let changes = integrate(&model, &mut map, &scan).into_iter();
+                let body = integrate_body(&mut map, at.into(), at.into(), 0.27);
+                for change in changes.chain(body) {
+                    cells.update(&map, change.cell);
+                }
+                let windows = cells.reflections.windows(LANES).enumerate();
+                for (place, reflections) in windows {
+                    let any = reflections.iter().any(|rho| *rho > 0.0);
+                    assert_eq!(cells.reflects(place), any);
+                }
+            }
+        }
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! This file is the equations as printed, in f64: the oracle. [`sweep`] holds what runs.
 
-pub(crate) mod basis;
+mod asks;
+mod basis;
 pub(crate) mod bound;
 pub(crate) mod evidence;
 mod front;

@@ -201,6 +201,17 @@ proptest! {
     }
 
     #[test]
+    fn the_fast_gain_is_the_literal_one_for_long_ranges(
+        model in some_models(), usable_range in prop::sample::select(vec![3.0, 4.05]),
+        scans in prop::collection::vec((-1.0..1.0f64, -0.7..0.7f64, some_ranges()), 1..3)
+    ) {
+        let model = ModelParameters { usable_range, sigma_in: 0.3, ..model };
+        let parameters = PlannerParameters { strategy: Strategy::Ig, ..PlannerParameters::standard() };
+        let s = setting_of(&model, &SonarRing::b21r(), parameters);
+        check_gains_after_every_scan(s, scans)?;
+    }
+
+    #[test]
     fn what_is_kept_equals_what_a_fresh_planner_computes(scans in some_scans(), strategy in strategies()) {
         let mut s = setting(strategy, 11, |_| ());
         s.stand(0.0, 0.0);

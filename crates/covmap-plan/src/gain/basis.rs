@@ -1,9 +1,10 @@
 //! The few readings that others are mixtures of.
 //!
 //! What a reading tells of a cell in front of its end depends on σ_out and γ only, whatever the
-//! ring; so does what it tells of one behind. Its gain is nearly a mixture of those of some ten
-//! readings, with the same weights for every histogram. These few are evaluated when a cell changes,
-//! and kept; a mixture of them takes a fifth of the time that an evaluation does.
+//! ring; so does what it tells of one behind, and what no echo tells. Its gain is nearly a mixture of
+//! those of a few readings, with the same weights for every histogram: with the fitted default of 13
+//! in front, 9 behind, and one. These are evaluated when a cell changes, and kept; a mixture of them
+//! takes a fifth of the time that an evaluation does.
 
 use super::evidence::{Evidence, Prior, Reading};
 use super::interpolation::Probes;
@@ -14,8 +15,11 @@ use pulp::Arch;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The gain of a mixture may be off by so much of what an interpolated one may.
+/// The gain of a mixture may be off by so much of what an interpolated one may, where the readings
+/// are those that tell most.
 const SHARE: f64 = 0.5;
+/// So many readings tell how large a basis must be, about.
+const SAMPLE: usize = 512;
 /// So many blocks of cells are looked through by one thread.
 const BLOCKS: usize = 64;
 
@@ -47,19 +51,26 @@ pub(crate) struct Basis {
 }
 
 impl Basis {
-    /// Takes some of these readings into the basis, as many as all of them need; none if that are
-    /// more than `most`.
-    pub(super) fn extend(
+    /// Takes some of these readings into the basis, as many as all of them need.
+    pub(super) fn extend(&mut self, readings: &[&Evidence], probes: &Probes) -> Mixtures {
+        let gains = probes.in_tolerances(readings);
+        let Span { members, weights } = Span::of(&gains, SHARE);
+        let first = self.readings.len();
+        self.readings.extend(members.iter().map(|member| readings[*member].reading()));
+        Mixtures { first, weights, gains, taken: 0 }
+    }
+
+    /// The same, unless it takes more than `most`. Some of the readings tell.
+    pub(super) fn extend_by_few(
         &mut self,
         readings: &[&Evidence],
         probes: &Probes,
         most: usize,
     ) -> Option<Mixtures> {
-        let gains = probes.in_tolerances(readings);
-        let Span { members, weights } = Span::of(&gains, SHARE, most)?;
-        let first = self.readings.len();
-        self.readings.extend(members.iter().map(|member| readings[*member].reading()));
-        Some(Mixtures { first, weights, gains, taken: 0 })
+        let some: Vec<&Evidence> =
+            readings.iter().step_by(readings.len() / SAMPLE + 1).copied().collect();
+        let needed = Span::of(&probes.in_tolerances(&some), SHARE).members.len();
+        (needed <= most).then(|| self.extend(readings, probes))
     }
 
     /// Makes room for the gains of so many blocks of cells.
@@ -116,7 +127,7 @@ impl Mixtures {
     }
 
     /// The next reading.
-    pub(super) fn next(&mut self) -> Imagined {
+    pub(super) fn mix_next(&mut self) -> Imagined {
         let place = self.take(1).start;
         self.sum(&[(1.0, place)])
     }

@@ -26,7 +26,7 @@ use rayon::prelude::*;
 /// Distances up to the usable range are put into so many bands.
 const BANDS: usize = 4;
 /// No member of a family gains more than this times the largest of those that are evaluated, in
-/// any of the probes.
+/// any of the probes. With 1.05 a histogram was met whose gain is above its bound.
 const MARGIN: f64 = 1.15;
 /// Histograms that were not probed may exceed that by this factor.
 const CAUTION: f64 = 1.02;

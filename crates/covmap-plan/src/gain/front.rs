@@ -2,7 +2,8 @@
 //!
 //! Their gains are interpolated between a few ranges and a few distances. Along the distance they
 //! are taken apart into polynomials: how a gain changes within a ring is much smaller than the
-//! gain, so that its coefficients need fewer ranges.
+//! gain, so that its coefficients need fewer ranges. (Cosines are orthogonal whatever the distances
+//! are: taking apart by itself changes nothing.)
 
 use super::basis::{Imagined, Mixtures};
 use super::span::Span;
@@ -34,7 +35,7 @@ pub(super) struct Lattice {
     pub(super) of_cells: Vec<Vec<Vec<f64>>>,
     /// How many distances.
     pub(super) distances: usize,
-    /// What a gain may be off.
+    /// What a gain may be off for each distance, in units of what an interpolated one may.
     pub(super) tolerance: f64,
 }
 
@@ -58,7 +59,7 @@ impl Lattice {
             };
             let vector = |range| front.gains(&coefficient(range));
             let vectors: Vec<Vec<f64>> = (0..ranges).map(vector).collect();
-            let Some(span) = Span::of(&vectors, tolerance, ranges) else { continue };
+            let span = Span::of(&vectors, tolerance);
             for (i, member) in span.members.iter().enumerate() {
                 readings.push(front.sum(&coefficient(*member)));
                 for (weights, of_ranges) in weights.iter_mut().zip(&of_outcomes) {
@@ -97,7 +98,7 @@ pub(super) fn to_f32(x: f64) -> f32 {
     x
 }
 
-fn to_f64(count: usize) -> f64 {
+pub(super) fn to_f64(count: usize) -> f64 {
     #[allow(clippy::cast_precision_loss, reason = "few nodes")]
     let count = count as f64;
     count

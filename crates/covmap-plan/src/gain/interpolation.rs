@@ -164,12 +164,11 @@ impl Probes {
     pub(crate) fn in_tolerances(&self, readings: &[&Evidence]) -> Vec<Vec<f64>> {
         let after: Vec<Vec<f64>> = readings.iter().map(|reading| self.after(reading)).collect();
         let allowed = self.allowed(&after, 1.0);
-        let before: Vec<f64> = self.probes.iter().map(|(_, u)| -u.iter().sum::<f64>()).collect();
-        let scaled = |after: Vec<f64>| {
-            let gains = before.iter().zip(after).map(|(before, after)| before - after);
-            gains.zip(&allowed).map(|(gain, allowed)| gain / allowed).collect()
+        let scaled = |reading: &&Evidence| {
+            let gains = self.gains(reading).into_iter().zip(&allowed);
+            gains.map(|(gain, allowed)| gain / allowed).collect()
         };
-        after.into_iter().map(scaled).collect()
+        readings.iter().map(scaled).collect()
     }
 
     /// The entropy of every probe after a reading \[nats\].

@@ -3,11 +3,11 @@
 //! A ring is what the beams see at about one distance δ. For an outcome d its cells are in
 //! *front* of the end, or *near* it: at the end or behind. In front the gain of a cell is
 //! smooth in δ and in d, so that a few readings stand for all ranges ([`Nodes`]); behind it is
-//! smooth in δ; at the end every distance is evaluated by itself.
+//! smooth in δ; at the end every distance has a reading of its own.
 
 use super::basis::{Basis, Imagined, Mixtures};
 use super::evidence::Evidence;
-use super::front::{Front, Lattice, to_f32};
+use super::front::{Front, Lattice, to_f32, to_f64};
 use super::interpolation::{Nodes, Probes};
 use crate::{BeamStencil, Stencil};
 use covmap_model::{Linear, Outcome, SensorModel};
@@ -65,29 +65,25 @@ pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> (Vec<Ring>, Basis
     let build = |ring| Builder::new(model, stencil, &probes, ring).build();
     let built: Vec<Built> = (0..count.unwrap_or(0)).map(build).collect();
     let mut basis = Basis::default();
-    let mut mixed = |side, most| {
+    let of_side = |side| {
         let readings = built.iter().flat_map(|built| &built.readings);
-        let readings: Vec<&Evidence> =
-            readings.filter(|(s, _)| *s == side).map(|(_, evidence)| evidence).collect();
-        basis.extend(&readings, &probes, most)
+        readings.filter(|(s, _)| *s == side).map(|(_, e)| e).collect::<Vec<&Evidence>>()
     };
-    let mut front = mixed(Side::Front, usize::MAX);
-    let mut end = mixed(Side::End, MOST_AT_END);
-    let mut behind = mixed(Side::Behind, usize::MAX);
-    let mut nowhere = mixed(Side::Nowhere, usize::MAX);
+    let mut front = basis.extend(&of_side(Side::Front), &probes);
+    let mut end = basis.extend_by_few(&of_side(Side::End), &probes, MOST_AT_END);
+    let mut behind = basis.extend(&of_side(Side::Behind), &probes);
+    let mut nowhere = basis.extend(&of_side(Side::Nowhere), &probes);
     let ring = |Built { mut ring, readings, lattice }: Built| {
         for (side, evidence) in &readings {
-            let mixtures = match side {
-                Side::Front => continue,
-                Side::End => &mut end,
-                Side::Behind => &mut behind,
-                Side::Nowhere => &mut nowhere,
-            };
             let evaluated = || Imagined::Evaluated(evidence.reading());
-            ring.readings.push(mixtures.as_mut().map_or_else(evaluated, Mixtures::next));
+            ring.readings.push(match side {
+                Side::Front => continue,
+                Side::End => end.as_mut().map_or_else(evaluated, Mixtures::mix_next),
+                Side::Behind => behind.mix_next(),
+                Side::Nowhere => nowhere.mix_next(),
+            });
         }
-        let lattice = lattice.zip(front.as_mut());
-        ring.front = lattice.map(|(lattice, front)| lattice.reduce(front, &mut ring.readings));
+        ring.front = lattice.map(|lattice| lattice.reduce(&mut front, &mut ring.readings));
         ring
     };
     (built.into_iter().map(ring).collect(), basis)
@@ -96,7 +92,7 @@ pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> (Vec<Ring>, Basis
 /// A ring before the readings of all rings are known.
 struct Built {
     ring: Ring,
-    /// With where they end.
+    /// With where they end from the ring's cells.
     readings: Vec<(Side, Evidence)>,
     lattice: Option<Lattice>,
 }
@@ -122,6 +118,7 @@ enum Side {
     Front,
     End,
     Behind,
+    /// No echo.
     Nowhere,
 }
 
@@ -134,7 +131,7 @@ struct Builder<'a> {
     cells: Vec<Range<usize>>,
     /// All distances of the ring's cells, in order.
     distances: Vec<f64>,
-    /// With where they end.
+    /// With where they end from the ring's cells.
     readings: Vec<(Side, Evidence)>,
 }
 
@@ -168,7 +165,8 @@ impl<'a> Builder<'a> {
             let model = self.model;
             self.smooth(ranges, Side::Nowhere, |d| Evidence::new(model, d, Outcome::NoEcho))
         });
-        let lattice = (first < ranges && !self.distances.is_empty()).then(|| self.front(first));
+        let reaches_cells = first < ranges && self.any_cell(ranges - 1, |_| true);
+        let lattice = reaches_cells.then(|| self.front(first));
         let ring = Ring { readings: Vec::new(), front: None, near, no_echo, cells: self.cells };
         Built { ring, readings: self.readings, lattice }
     }
@@ -222,7 +220,7 @@ impl<'a> Builder<'a> {
             of_outcomes: in_range.weights,
             of_cells: self.of_cells(&in_distance, first),
             distances,
-            tolerance: REDUCED * self.leniency,
+            tolerance: REDUCED * self.leniency / to_f64(distances),
         }
     }
 

@@ -9,9 +9,8 @@ pub(super) struct Span {
 
 impl Span {
     /// As few vectors as leave no number of any farther off than the tolerance: one after the
-    /// other that one joins which is farthest from what those before it span. `None` if that takes
-    /// more than `most`.
-    pub(super) fn of(vectors: &[Vec<f64>], tolerance: f64, most: usize) -> Option<Self> {
+    /// other that one joins which is farthest from what those before it span.
+    pub(super) fn of(vectors: &[Vec<f64>], tolerance: f64) -> Self {
         let mut rest = vectors.to_vec();
         let mut parts = vec![Vec::new(); vectors.len()];
         let mut members: Vec<usize> = Vec::new();
@@ -19,9 +18,6 @@ impl Span {
             let far = |rest: &Vec<f64>| rest.iter().fold(0.0, |far: f64, x| far.max(x.abs()));
             let farthest = rest.iter().map(far).enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
             let Some((member, _)) = farthest.filter(|(_, far)| *far > tolerance) else { break };
-            if members.len() == most {
-                return None;
-            }
             members.push(member);
             let length = dot(&rest[member], &rest[member]).sqrt();
             let direction: Vec<f64> = rest[member].iter().map(|x| x / length).collect();
@@ -33,7 +29,7 @@ impl Span {
         }
         let of_members: Vec<&Vec<f64>> = members.iter().map(|member| &parts[*member]).collect();
         let weights = parts.iter().map(|parts| weights(&of_members, parts)).collect();
-        Some(Self { members, weights })
+        Self { members, weights }
     }
 }
 
@@ -68,8 +64,7 @@ mod tests {
         let vectors: Vec<Vec<f64>> = (0..30)
             .map(|i| samples(&[f64::from(i), f64::from(i % 7) - 3.0, f64::from(i % 5)]))
             .collect();
-        assert!(Span::of(&vectors, 1e-9, 2).is_none());
-        let Span { members, weights } = Span::of(&vectors, 1e-9, 3).unwrap();
+        let Span { members, weights } = Span::of(&vectors, 1e-9);
         assert_eq!(members.len(), 3);
         for (vector, weights) in vectors.iter().zip(&weights) {
             for (i, x) in vector.iter().enumerate() {
@@ -81,7 +76,7 @@ mod tests {
 
     #[test]
     fn what_is_within_the_tolerance_needs_no_member() {
-        let small = Span::of(&[vec![0.1, -0.2], vec![0.0, 0.2]], 0.3, 9).unwrap();
+        let small = Span::of(&[vec![0.1, -0.2], vec![0.0, 0.2]], 0.3);
         assert!(small.members.is_empty() && small.weights == [vec![], vec![]]);
     }
 }

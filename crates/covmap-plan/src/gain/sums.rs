@@ -4,7 +4,7 @@ use super::front::Front;
 use super::rings::{Shares, Source};
 use covmap::lanes::{LANES, Lanes, TOGETHER};
 
-/// How much each of some nodes weighs in all of a unit's outcomes from the `first` on together.
+/// How much each of some readings weighs in all of a unit's outcomes from the `first` on together.
 #[inline(always)]
 pub(super) fn mix_outcomes<'a>(
     likely: impl Iterator<Item = (&'a usize, &'a Lanes)>,

@@ -1,12 +1,13 @@
 //! Eq. (14) for many view-points at once, ring by ring.
 //!
 //! What a cell may gain depends on where it is seen from by its distance only. So for each ring
-//! of distance the gains of the imagined readings are computed once for every cell, and then
-//! summed over the cells of each beam of each view-point, [`LANES`] neighbours of a row side by
-//! side.
+//! of distance the gains of the imagined readings are mixed from those that are kept for every
+//! cell, or evaluated, and then summed over the cells of each beam of each view-point, [`LANES`]
+//! neighbours of a row side by side.
 
+use super::asks::{Ask, Asks};
 use super::basis::Basis;
-use super::rings::{Ring, Shares, Source, rings};
+use super::rings::{Ring, rings};
 use super::sums::{add_product, mix_outcomes};
 use crate::cells::Cells;
 use crate::view_points::groups;
@@ -77,48 +78,48 @@ impl<'a> Turn<'a> {
 }
 
 /// The gains of the cells around some rows at one ring, and which of them are asked for.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Default)]
 struct Room {
     /// For each row of cells the planes of all readings; 0 outside of the grid.
     planes: Vec<f32>,
+    /// The rows that were inside of the grid when it was last used.
+    inside: Range<usize>,
     /// For each block of cells bit by bit.
     asked: Vec<u64>,
+}
+
+impl Clone for Room {
+    /// An empty room: what is in one is never needed again.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl Room {
+    /// Makes room for so many rows of planes, so many numbers each, some of them inside of the
+    /// grid, and for blocks of cells. Memory that is asked for as zeros costs nothing until it is
+    /// used, and most rows outside were outside before.
+    fn prepare(&mut self, (rows, row): (usize, usize), inside: Range<usize>, blocks: usize) {
+        if self.planes.len() < rows * row {
+            *self = Self { planes: vec![0.0; rows * row], ..Self::default() };
+        }
+        for outside in self.inside.clone().filter(|y| !inside.contains(y)) {
+            self.planes[outside * row..(outside + 1) * row].fill(0.0);
+        }
+        self.inside = inside;
+        self.asked.resize(rows * blocks, 0);
+    }
 }
 
 /// So many units of a row are prepared and then summed.
 const AT_ONCE: usize = 16;
 
-/// Fewer units than this are worked at by one thread: for each ring another one is woken up twice,
+/// Fewer units than this are worked at by one thread for each half of the rings: for each ring another one is woken up twice,
 /// which took more than half of the time of an exploration by CL, whose reports have few units.
 const SHARED: usize = 160;
 
-/// A run of neighbouring cells from a view-point: row, first and last column, and which readings
-/// of theirs are asked for, bit by bit.
-#[derive(Debug, Clone, Copy)]
-struct Ask {
-    dy: isize,
-    first: isize,
-    last: isize,
-    readings: u64,
-}
-
-/// The bit of a reading: with more than 64 several share one.
-#[inline(always)]
-fn bit(reading: usize) -> u64 {
-    1 << (reading % 64)
-}
-
-/// What a ring's outcomes ask for: some readings of all its cells, or for each beam what its
-/// cells ask for themselves.
-#[derive(Debug, Clone)]
-struct Asks {
-    /// For each beam all its cells.
-    cells: Vec<Vec<Ask>>,
-    front: u64,
-    /// In the order of the ring's own.
-    near: Vec<(u64, Vec<Vec<Ask>>)>,
-    no_echo: u64,
-}
+/// A room of more numbers than this, 16 MB, is not kept: decisions that need it are slow anyway.
+const KEPT: usize = 1 << 22;
 
 /// Computes E\[I\] of many beams.
 #[derive(Debug, Clone)]
@@ -150,12 +151,12 @@ impl Sweep {
         basis.make_room(grid.height() * groups(&grid));
         let border = usize::try_from(stencil.radius).unwrap_or(0).next_multiple_of(LANES);
         let stride = grid.width().next_multiple_of(LANES) + 2 * border;
-        let row = stride * rings.iter().map(|ring| ring.readings.len()).max().unwrap_or(0);
+        let row = stride * rings.iter().map(|ring| ring.readings.len()).max().unwrap_or(0).max(1);
         let width = isize::try_from(row).unwrap_or(0);
         let offset = |c: &StencilCell| c.dy as isize * width + c.dx as isize;
         Self {
             grid,
-            asks: rings.iter().map(|ring| asks(ring, stencil)).collect(),
+            asks: rings.iter().map(|ring| Asks::new(ring, stencil)).collect(),
             rings,
             basis,
             offsets: stencil.beams.iter().map(|b| b.cells.iter().map(offset).collect()).collect(),
@@ -177,20 +178,21 @@ impl Sweep {
         let mut rooms = std::mem::take(&mut self.rooms);
         let [even, odd] = &mut rooms;
         let (mut gains, more) = rayon::join(
-            || self.turn(arch, cells, rows, 0, even),
-            || self.turn(arch, cells, rows, 1, odd),
+            || self.half(arch, cells, rows, 0, even),
+            || self.half(arch, cells, rows, 1, odd),
         );
         for (gain, more) in gains.iter_mut().flatten().zip(more.iter().flatten()) {
             for lane in 0..LANES {
                 gain[lane] += more[lane];
             }
         }
-        self.rooms = rooms;
+        let small = |room: Room| if room.planes.len() <= KEPT { room } else { Room::default() };
+        self.rooms = rooms.map(small);
         gains
     }
 
     /// What every second ring from the `first` on contributes to the gains.
-    fn turn(
+    fn half(
         &self,
         arch: Arch,
         cells: &Cells,
@@ -207,18 +209,16 @@ impl Sweep {
         let blocks = groups(&self.grid);
         // Rows of planes from `low` − border on.
         let count = high - low + 1 + 2 * self.border;
-        room.planes.resize(count * self.row, 0.0);
-        room.asked.resize(count * blocks, 0);
-        let is_inside =
-            |y: usize| (y + low).checked_sub(self.border).filter(|y| *y < self.grid.height());
-        let outside = room.planes.chunks_mut(self.row).enumerate();
-        outside.filter(|(y, _)| is_inside(*y).is_none()).for_each(|(_, row)| row.fill(0.0));
+        let above = (self.grid.height() + self.border - low).min(count);
+        let inside = self.border.saturating_sub(low)..above;
+        room.prepare((count, self.row), inside.clone(), blocks);
         for (ring, asks) in self.rings.iter().zip(&self.asks).skip(first).step_by(2) {
             room.asked.fill(0);
             self.ask(ring, asks, &mut turns, low, &mut room.asked);
             let filled = room.planes.par_chunks_mut(self.row).zip(room.asked.par_chunks(blocks));
             filled.enumerate().with_min_len(together).for_each(|(y, (planes, asked))| {
-                if let Some(y) = is_inside(y) {
+                if inside.contains(&y) {
+                    let y = y + low - self.border;
                     arch.dispatch(Fill { sweep: self, ring, cells, y, asked, planes });
                 }
             });
@@ -234,20 +234,16 @@ impl Sweep {
     /// For every block of cells from the first row's on, which readings of a ring the units need.
     fn ask(&self, ring: &Ring, asks: &Asks, turns: &mut [Turn], low: usize, asked: &mut [u64]) {
         let blocks = groups(&self.grid);
-        let (lanes, last_block) = (LANES.cast_signed(), blocks.cast_signed() - 1);
         let nearest = ring.near.first().map_or(0, |(k, _)| *k);
         for Turn { row: Row { y, units, outcomes, .. }, units: progress } in turns {
             for (unit, Progress { left, sides, .. }) in units.iter().zip(progress) {
                 let passed = outcomes[left.clone()].iter().take_while(|k| **k < nearest);
                 left.start += passed.count();
                 *sides = self.sides(ring, left.clone(), outcomes);
-                let x = (unit.group * LANES).cast_signed();
                 let mut ask = |asks: &[Ask], readings: u64| {
                     for ask in asks {
                         let y = (*y + self.border - low).wrapping_add_signed(ask.dy);
-                        let from = ((x + ask.first) >> LANES.ilog2()).max(0);
-                        let to = ((x + ask.last + lanes - 1) >> LANES.ilog2()).min(last_block);
-                        for block in from..=to {
+                        for block in ask.blocks(unit.group, blocks) {
                             asked[(y * blocks).wrapping_add_signed(block)] |=
                                 ask.readings | readings;
                         }
@@ -280,45 +276,6 @@ impl Sweep {
         let no_echo = (echoes < own.len() && ring.no_echo.is_some()).then_some(start + echoes);
         Sides { near: start..start + near, front: start + near..start + echoes, no_echo }
     }
-}
-
-/// What each outcome of a ring asks for.
-fn asks(ring: &Ring, stencil: &Stencil) -> Asks {
-    let cells = |beam: usize| &stencil.beams[beam].cells[ring.cells[beam].clone()];
-    let bits = |readings: Range<usize>| readings.fold(0, |bits, reading| bits | bit(reading));
-    let of_source = |source: &Source| match &source.shares {
-        Shares::Weights(_) => (bits(source.first..source.first + source.count), Vec::new()),
-        Shares::Own(own) => {
-            let ask = |(beam, own): (usize, &Vec<(usize, usize)>)| {
-                runs(own.iter().map(|(i, reading)| (&cells(beam)[*i], bit(source.first + reading))))
-            };
-            (0, own.iter().enumerate().map(ask).collect())
-        }
-    };
-    let all = |beam| runs(cells(beam).iter().map(|cell| (cell, 0)));
-    Asks {
-        cells: (0..stencil.beams.len()).map(all).collect(),
-        front: ring.front.as_ref().map_or(0, |f| bits(f.base..f.base + f.count)),
-        near: ring.near.iter().map(|(_, source)| of_source(source)).collect(),
-        no_echo: ring.no_echo.as_ref().map_or(0, |source| of_source(source).0),
-    }
-}
-
-/// Runs of neighbouring cells, with the readings that any of them asks for.
-fn runs<'a>(cells: impl Iterator<Item = (&'a StencilCell, u64)>) -> Vec<Ask> {
-    let mut places: Vec<(isize, isize, u64)> =
-        cells.map(|(cell, readings)| (cell.dy as isize, cell.dx as isize, readings)).collect();
-    places.sort_unstable();
-    let mut runs: Vec<Ask> = Vec::new();
-    for (dy, dx, readings) in places {
-        match runs.last_mut() {
-            Some(run) if run.dy == dy && dx - run.last < LANES.cast_signed() => {
-                (run.last, run.readings) = (dx, run.readings | readings);
-            }
-            _ => runs.push(Ask { dy, first: dx, last: dx, readings }),
-        }
-    }
-    runs
 }
 
 /// Evaluates the readings of a ring for one row of cells.
