@@ -103,7 +103,7 @@ mod tests {
 
     /// Shifts of every size, most of them thinner than the thinnest rectangle may be.
     fn shift() -> impl Strategy<Value = f64> {
-        prop_oneof![0.0..0.1, (-9.0..-1.0f64).prop_map(|exponent| 10f64.powf(exponent))]
+        prop_oneof![0.0..0.1, (-9.0..-1.0f64).prop_map(libm::exp10)]
     }
 
     proptest! {

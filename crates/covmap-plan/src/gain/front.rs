@@ -40,8 +40,8 @@ pub(super) struct Lattice {
 }
 
 impl Lattice {
-    /// As few readings as allowed in place of those for each range, and for it each distance, that
-    /// are next among all. They are added to those of the ring.
+    /// As few readings as allowed in place of the next ones of all in front, one for each range and
+    /// distance. They are added to those of the ring.
     pub(super) fn reduce(self, front: &mut Mixtures, readings: &mut Vec<Imagined>) -> Front {
         let Self { first, of_outcomes, of_cells, distances, tolerance } = self;
         let base = readings.len();

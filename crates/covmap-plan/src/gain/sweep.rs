@@ -114,8 +114,9 @@ impl Room {
 /// So many units of a row are prepared and then summed.
 const AT_ONCE: usize = 16;
 
-/// Fewer units than this are worked at by one thread for each half of the rings: for each ring another one is woken up twice,
-/// which took more than half of the time of an exploration by CL, whose reports have few units.
+/// Fewer units than this are worked at by one thread for each half of the rings: for each ring
+/// others are woken up twice, which took more than half of the time of an exploration by CL, whose
+/// reports have few units.
 const SHARED: usize = 160;
 
 /// A room of more numbers than this, 16 MB, is not kept: decisions that need it are slow anyway.
