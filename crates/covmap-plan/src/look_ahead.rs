@@ -248,7 +248,7 @@ fn bits(lanes: &[u16; LANES]) -> u16 {
     lanes.iter().enumerate().fold(0, |bits, (lane, set)| bits | (set << lane))
 }
 
-fn as_f64(count: usize) -> f64 {
+pub(crate) fn as_f64(count: usize) -> f64 {
     #[allow(clippy::cast_precision_loss, reason = "some thousand cells")]
     let count = count as f64;
     count

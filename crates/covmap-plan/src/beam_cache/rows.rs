@@ -4,7 +4,7 @@ use super::{Group, State};
 use crate::cells::Cells;
 use crate::gain::bound::Potentials;
 use crate::gain::sweep::{Row, Unit};
-use crate::look_ahead::{Ahead, Cone};
+use crate::look_ahead::{Ahead, Cone, as_f64};
 use covmap::lanes::{LANES, Lanes};
 use pulp::{Simd, WithSimd};
 
@@ -154,7 +154,5 @@ pub(super) fn average(gains: &[Lanes]) -> [f64; LANES] {
             sum[lane] += f64::from(gains[lane]);
         }
     }
-    #[allow(clippy::cast_precision_loss, reason = "few beams")]
-    let beams = gains.len() as f64;
-    sum.map(|gain| gain / beams)
+    sum.map(|gain| gain / as_f64(gains.len()))
 }

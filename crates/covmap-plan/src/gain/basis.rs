@@ -6,7 +6,7 @@
 //! in front, 9 behind, and one. These are evaluated when a cell changes, and kept; a mixture of them
 //! takes a fifth of the time that an evaluation does.
 
-use super::evidence::{Evidence, Prior, Reading};
+use super::evidence::{Evidence, Prior, Reading, to_f32};
 use super::interpolation::Probes;
 use super::span::Span;
 use crate::cells::Cells;
@@ -140,8 +140,7 @@ impl Mixtures {
 
     /// A sum of readings, each times a factor.
     pub(super) fn sum(&self, terms: &[(f64, usize)]) -> Imagined {
-        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-        let weights = sum(&self.weights, terms).into_iter().map(|weight| weight as f32).collect();
+        let weights = sum(&self.weights, terms).into_iter().map(to_f32).collect();
         Imagined::Mixed { first: self.first, weights }
     }
 }

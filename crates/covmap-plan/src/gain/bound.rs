@@ -10,7 +10,7 @@
 //! margin are found when the tables are built, on histograms of all kinds, as the nodes of an
 //! interpolation are ([`Probes`]).
 
-use super::evidence::{Evidence, Prior, Reading};
+use super::evidence::{Evidence, Prior, Reading, to_f32};
 use super::interpolation::Probes;
 use super::sums::add_product;
 use crate::Stencil;
@@ -179,9 +179,7 @@ impl Family {
             readings.push(members[member].reading());
             largest.iter_mut().zip(&gains[member]).for_each(|(l, gain)| *l = l.max(*gain));
         }
-        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-        let (margin, slack) = ((MARGIN * CAUTION) as f32, (CAUTION * slack) as f32);
-        Self { readings, margin, slack }
+        Self { readings, margin: to_f32(MARGIN * CAUTION), slack: to_f32(CAUTION * slack) }
     }
 }
 

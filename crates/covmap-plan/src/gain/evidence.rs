@@ -58,8 +58,7 @@ impl Evidence {
         let above: Vec<f64> = self.t.iter().map(|t| t / least - 1.0).collect();
         let first = above.iter().position(|e| *e > 0.0).unwrap_or(0);
         let end = above.iter().rposition(|e| *e > 0.0).map_or(first, |last| last + 1);
-        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-        let term = |e: &f64| (*e as f32, ((1.0 + e) * libm::log1p(*e) - e) as f32);
+        let term = |e: &f64| (to_f32(*e), to_f32((1.0 + e) * libm::log1p(*e) - e));
         Reading { first, terms: above[first..end].iter().map(term).collect() }
     }
 }
@@ -99,4 +98,11 @@ impl Prior<'_> {
         }
         gain
     }
+}
+
+/// A number of the tables: kept as f32 for speed.
+pub(crate) fn to_f32(x: f64) -> f32 {
+    #[allow(clippy::cast_possible_truncation, reason = "that is the purpose")]
+    let x = x as f32;
+    x
 }

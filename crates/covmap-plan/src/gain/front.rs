@@ -6,7 +6,9 @@
 //! are: taking apart by itself changes nothing.)
 
 use super::basis::{Imagined, Mixtures};
+use super::evidence::to_f32;
 use super::span::Span;
+use crate::look_ahead::as_f64;
 use covmap::lanes::TOGETHER;
 use std::f64::consts::PI;
 
@@ -53,7 +55,7 @@ impl Lattice {
         for degree in 0..distances {
             let cosines = cosines(degree, distances);
             let coefficient = |range: usize| {
-                let scale = if degree == 0 { 1.0 } else { 2.0 } / to_f64(distances);
+                let scale = if degree == 0 { 1.0 } else { 2.0 } / as_f64(distances);
                 let at = places.start + range * distances;
                 cosines.iter().zip(at..).map(|(c, at)| (scale * c, at)).collect::<Vec<_>>()
             };
@@ -80,7 +82,7 @@ impl Lattice {
 
 /// A Chebyshev polynomial at as many nodes.
 fn cosines(degree: usize, nodes: usize) -> Vec<f64> {
-    let cosine = |node| libm::cos(PI * to_f64(degree) * (to_f64(node) + 0.5) / to_f64(nodes));
+    let cosine = |node| libm::cos(PI * as_f64(degree) * (as_f64(node) + 0.5) / as_f64(nodes));
     (0..nodes).map(cosine).collect()
 }
 
@@ -90,16 +92,4 @@ fn together(rows: &[Vec<f64>], count: usize) -> Vec<Vec<[f32; TOGETHER]>> {
     let piece =
         |first| rows.iter().map(|row| std::array::from_fn(|i| number(row, first + i))).collect();
     (0..count).step_by(TOGETHER).map(piece).collect()
-}
-
-pub(super) fn to_f32(x: f64) -> f32 {
-    #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-    let x = x as f32;
-    x
-}
-
-pub(super) fn to_f64(count: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "few nodes")]
-    let count = count as f64;
-    count
 }

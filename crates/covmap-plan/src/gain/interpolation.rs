@@ -155,8 +155,7 @@ impl Probes {
 
     /// The gain of every probe by a reading, Eq. (13) \[nats\].
     pub(crate) fn gains(&self, evidence: &Evidence) -> Vec<f64> {
-        let before = self.probes.iter().map(|(_, u)| -u.iter().sum::<f64>());
-        before.zip(self.after(evidence)).map(|(before, after)| before - after).collect()
+        self.gained(self.after(evidence))
     }
 
     /// The gains of all probes by each of some readings, in units of what an interpolated one may be
@@ -164,11 +163,21 @@ impl Probes {
     pub(crate) fn in_tolerances(&self, readings: &[&Evidence]) -> Vec<Vec<f64>> {
         let after: Vec<Vec<f64>> = readings.iter().map(|reading| self.after(reading)).collect();
         let allowed = self.allowed(&after, 1.0);
-        let scaled = |reading: &&Evidence| {
-            let gains = self.gains(reading).into_iter().zip(&allowed);
+        let scaled = |after| {
+            let gains = self.gained(after).into_iter().zip(&allowed);
             gains.map(|(gain, allowed)| gain / allowed).collect()
         };
-        readings.iter().map(scaled).collect()
+        after.into_iter().map(scaled).collect()
+    }
+
+    /// The entropy of every probe \[nats\].
+    fn before(&self) -> impl Iterator<Item = f64> {
+        self.probes.iter().map(|(_, u)| -u.iter().sum::<f64>())
+    }
+
+    /// What every probe gained, given its entropy after a reading \[nats\].
+    fn gained(&self, after: Vec<f64>) -> Vec<f64> {
+        self.before().zip(after).map(|(before, after)| before - after).collect()
     }
 
     /// The entropy of every probe after a reading \[nats\].
@@ -185,10 +194,9 @@ impl Probes {
 
     /// The largest change of every probe's entropy, given those after some readings \[nats\].
     fn largest_gains(&self, after: &[Vec<f64>]) -> Vec<f64> {
-        let largest = |(probe, (_, u)): (usize, &(Vec<f64>, Vec<f64>))| {
-            let before = -u.iter().sum::<f64>();
+        let largest = |(probe, before): (usize, f64)| {
             after.iter().map(|after| (before - after[probe]).abs()).fold(0.0, f64::max)
         };
-        self.probes.iter().enumerate().map(largest).collect()
+        self.before().enumerate().map(largest).collect()
     }
 }

@@ -6,9 +6,10 @@
 //! smooth in δ; at the end every distance has a reading of its own.
 
 use super::basis::{Basis, Imagined, Mixtures};
-use super::evidence::Evidence;
-use super::front::{Front, Lattice, to_f32, to_f64};
+use super::evidence::{Evidence, to_f32};
+use super::front::{Front, Lattice};
 use super::interpolation::{Nodes, Probes};
+use crate::look_ahead::as_f64;
 use crate::{BeamStencil, Stencil};
 use covmap_model::{Linear, Outcome, SensorModel};
 use std::collections::BTreeSet;
@@ -220,7 +221,7 @@ impl<'a> Builder<'a> {
             of_outcomes: in_range.weights,
             of_cells: self.of_cells(&in_distance, first),
             distances,
-            tolerance: REDUCED * self.leniency / to_f64(distances),
+            tolerance: REDUCED * self.leniency / as_f64(distances),
         }
     }
 
