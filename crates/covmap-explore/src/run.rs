@@ -98,7 +98,10 @@ struct Explorer<'a, R, H> {
     at: Point2<f64>,
     cell: Cell,
     left_start: bool,
-    /// The robot does not fit on the centre of its cell: it stays where it is.
+    /// The robot stands where a step ends: not yet, at a start that is off its cell's centre.
+    settled: bool,
+    /// The robot does not get to the centre of the cell that it started in: the start itself
+    /// stands for it.
     cramped: bool,
     /// How far the robot drove since it last measured [m].
     since_scan: f64,
@@ -137,6 +140,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
             at,
             cell,
             left_start: false,
+            settled: false,
             cramped: false,
             since_scan: 0.0,
             scans: Vec::new(),
@@ -156,7 +160,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
             if self.is_budget_spent() {
                 return ControlFlow::Continue(Ending::BudgetSpent);
             }
-            let (path, stays) = (self.way(&decision), decision.path.is_empty());
+            let (path, stays) = (decision.path.clone(), decision.path.is_empty());
             self.decide(decision)?;
             if (self.drive(&path)? || stays) && !self.is_budget_spent() {
                 self.scan()?;
@@ -170,10 +174,11 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         self.mission.limits.max_scans.is_some_and(|most| self.scans.len() >= most)
     }
 
-    /// The cells to drive over. To stay in its cell means to go to its centre, if it can.
-    fn way(&self, decision: &Decision) -> Vec<Cell> {
-        let stays = decision.path.is_empty() && !self.cramped;
-        if stays { vec![decision.target] } else { decision.path.clone() }
+    /// Where the robot stands in a cell: on its centre, if it gets there.
+    fn place(&self, cell: Cell) -> Point2<f64> {
+        let start = Point2::from(self.mission.start.translation.vector);
+        let is_start = self.mission.grid.cell_at(start) == Some(cell);
+        if self.cramped && is_start { start } else { self.mission.grid.center(cell) }
     }
 
     fn decide(&mut self, decision: Decision) -> ControlFlow<()> {
@@ -194,45 +199,46 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         self.report(Event::Scan { number: self.scans.len() - 1, scan })
     }
 
-    /// Drives over the centres of some cells; `false` if it bumped into something.
+    /// Drives from where it is over some cells; `false` if it bumped into something.
     fn drive(&mut self, path: &[Cell]) -> ControlFlow<(), bool> {
-        for cell in path {
-            let center = self.mission.grid.center(*cell);
-            if !self.drive_straight(center, *cell)? {
-                self.cramped |= self.cell == *cell;
+        if !self.settled {
+            self.settled = true;
+            self.cramped = !self.drive_straight(self.cell)?;
+            if self.cramped {
                 return ControlFlow::Continue(false);
             }
-            self.left_start |= self.cell != *cell;
-            self.cramped = false;
+        }
+        for cell in path {
+            if !self.drive_straight(*cell)? {
+                return ControlFlow::Continue(false);
+            }
+            self.left_start = true;
+            self.planner.drove(self.cell, *cell);
             self.cell = *cell;
-            self.planner.stand_on(*cell);
         }
         ControlFlow::Continue(true)
     }
 
-    /// Drives to the centre of a cell, measuring on the way if that is wanted. After a bump
-    /// the robot backs to where it came from, and the cell is blocked.
-    fn drive_straight(&mut self, center: Point2<f64>, cell: Cell) -> ControlFlow<(), bool> {
-        let home = self.at;
+    /// Drives to its place in a cell, measuring on the way if that is wanted. After a bump the
+    /// robot backs to where it came from.
+    fn drive_straight(&mut self, cell: Cell) -> ControlFlow<(), bool> {
+        let (home, place) = (self.at, self.place(cell));
         loop {
-            let left = (center - self.at).norm();
+            let left = (place - self.at).norm();
             let step = self
                 .mission
                 .limits
                 .while_driving
                 .map_or(f64::INFINITY, |every| every - self.since_scan);
             let measures = step < left;
-            let goal = if measures {
-                self.at + (center - self.at) * (step.max(0.0) / left)
-            } else {
-                center
-            };
+            let goal =
+                if measures { self.at + (place - self.at) * (step.max(0.0) / left) } else { place };
             match self.robot.drive(self.at, goal) {
                 Drive::Arrived => self.advance(goal),
                 Drive::Bumped { at } => {
                     self.advance(at);
                     self.bumps += 1;
-                    self.planner.bump_at(cell);
+                    self.planner.bump(self.cell, cell);
                     let event = Event::Bump { cell, at, towards: goal };
                     self.advance(home);
                     self.report(event)?;

@@ -1,7 +1,7 @@
 //! E[I] of view-points, the literal equations beside what runs, and one distance field.
 #![allow(missing_docs, clippy::unwrap_used, reason = "a benchmark")]
 
-use covmap::{CoverageMap, Grid, Raster};
+use covmap::{CoverageMap, Grid, Raster, Steps};
 use covmap_model::{ModelParameters, SensorModel, integrate, integrate_body};
 use covmap_plan::{
     Planner, PlannerParameters, Stencil, Strategy, expected_information_gain, travel_costs,
@@ -47,7 +47,7 @@ fn bench(c: &mut Criterion) {
     let grid = Grid::new(Point2::origin(), 0.1, 1000, 1000).unwrap();
     let middle = grid.cell(500_500);
     c.bench_function("distance field, 1000 × 1000 cells", |b| {
-        b.iter(|| travel_costs(&grid, middle, |i| i % 17 != 0));
+        b.iter(|| travel_costs(Steps::between(&grid, |i| i % 17 != 0), middle));
     });
 }
 

@@ -62,12 +62,8 @@ impl Planner {
         self.exploration.counted_scans(self.grid)
     }
 
-    /// Whether the robot can reach any view-point but the cell that it is in.
+    /// Whether a step leads the robot out of the cell that it is in.
     pub fn can_move(&self, from: Cell) -> bool {
-        let near = |(dx, dy)| self.grid.index(from.offset(dx, dy));
-        [(1, 0), (-1, 0), (0, 1), (0, -1)]
-            .into_iter()
-            .filter_map(near)
-            .any(|i| self.traversable.at(i))
+        self.grid.index(from).is_some_and(|i| self.traversable.steps().from(i) != 0)
     }
 }

@@ -38,9 +38,9 @@ pub enum Scope {
 /// What is made of the fact that the robot's body fits where it stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BodyEvidence {
-    /// Nothing.
+    /// Nothing, but that a step that the robot has driven can be driven again.
     Off,
-    /// A view-point that the robot stood on stays traversable.
+    /// Also, a view-point that the robot stood on stays traversable from all sides.
     PlannerOnly,
     /// Also, cells entirely under the body are free in the map.
     Belief,
@@ -154,10 +154,10 @@ impl PlannerParameters {
         within("passage_length", self.passage_length, 0.0, 100.0)
     }
 
-    /// The longest passage that is tried, in cells.
-    pub(crate) fn longest_passage(&self, resolution: f64) -> usize {
+    /// The longest passage that is tried, in cells; `None` if none is.
+    pub(crate) fn longest_passage(&self, resolution: f64) -> Option<usize> {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1e6")]
         let cells = (self.passage_length / resolution + 1e-9).min(1e6) as usize;
-        cells
+        (self.passage_length > 0.0).then_some(cells)
     }
 }

@@ -1,81 +1,69 @@
 //! Places that may be a passage though they look blocked.
 
-use covmap::{Cell, Grid};
-use std::collections::VecDeque;
+use covmap::{Grid, Steps, neighbour};
 
-/// The cells of the blocked passage to which, and through which, it is nearest from where the
-/// robot is to what lies beyond; of at most `longest` cells, by their row-major index; `None`
-/// if there is none.
+/// A way that nobody tried, from a cell that the robot can reach to one of what lies beyond:
+/// its cells by their row-major index, with both.
 ///
-/// `travel_cost` tells how far each cell is \[cells\] that the robot can reach. In the passage
-/// every step leads to one of the four neighbours, over cells that `may_open`, as few as
-/// possible; it ends beside a cell that `is_beyond`.
+/// `travel_cost` tells how far each cell is \[cells\] that the robot can reach. Between the ends
+/// there are at most `longest` cells, as few as possible, each one of those that `may_try`; each
+/// step `may_try_step`. It is the passage through which it is nearest to what `is_beyond`; `None`
+/// if there is none.
 pub(crate) fn nearest_passage(
     grid: &Grid,
     longest: usize,
     travel_cost: impl Fn(usize) -> Option<f64>,
-    may_open: impl Fn(usize) -> bool,
+    may_try: impl Fn(usize) -> bool,
+    may_try_step: impl Fn(usize, usize) -> bool,
     is_beyond: impl Fn(usize) -> bool,
 ) -> Option<Vec<usize>> {
     const UNSEEN: usize = usize::MAX;
     let mut previous = vec![UNSEEN; grid.len()];
-    let mut front = VecDeque::new();
-    for (index, previous) in previous.iter_mut().enumerate() {
-        if let Some(cost) = travel_cost(index) {
-            *previous = index;
-            front.push_back((index, cost, 0));
-        }
-    }
-    let mut nearest: Option<(f64, usize)> = None;
-    // Costs grow by one from cell to cell, so that each length stays in this order.
-    front
-        .make_contiguous()
-        .sort_by(|a: &(usize, f64, usize), b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
-    while let Some((at, cost, length)) = front.pop_front() {
-        for next in neighbours(grid, at).filter(|next| previous[*next] == UNSEEN) {
-            if length > 0 && is_beyond(next) && nearest.is_none_or(|(least, _)| cost < least) {
-                nearest = Some((cost, at));
+    let mut front: Vec<(f64, usize)> =
+        (0..grid.len()).filter_map(|index| Some((travel_cost(index)?, index))).collect();
+    front.iter().for_each(|(_, index)| previous[*index] = *index);
+    let mut nearest: Option<(f64, usize, usize)> = None;
+    // Of passages of the same number of cells the nearest comes first.
+    for length in 0..=longest {
+        let mut next = Vec::new();
+        front.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        for &(cost, at) in &front {
+            for step in 0..8 {
+                let Some(to) = neighbour(grid, at, step) else { continue };
+                if previous[to] != UNSEEN || !may_try_step(at, step) {
+                    continue;
+                }
+                let cost = cost + if step % 2 == 0 { 1.0 } else { std::f64::consts::SQRT_2 };
+                if is_beyond(to) {
+                    if nearest.is_none_or(|(least, ..)| cost < least) {
+                        nearest = Some((cost, at, to));
+                    }
+                } else if length < longest && may_try(to) {
+                    next.push((cost, at, to));
+                }
             }
         }
-        if length == longest {
-            continue;
-        }
-        for next in neighbours(grid, at) {
-            if previous[next] == UNSEEN && may_open(next) {
-                previous[next] = at;
-                front.push_back((next, cost + 1.0, length + 1));
+        next.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.2.cmp(&b.2)));
+        front.clear();
+        for (cost, at, to) in next {
+            if previous[to] == UNSEEN {
+                previous[to] = at;
+                front.push((cost, to));
             }
         }
     }
-    nearest.map(|(_, last)| way_back(&previous, last))
+    nearest.map(|(_, last, beyond)| way_from(&previous, last, beyond))
 }
 
-/// The cells of all regions that hang together by their sides, of at least `least` cells, one of
-/// which `is_wanted`.
+/// The cells of those regions of members, of at least `least` cells, one of which `is_wanted`.
 pub(crate) fn regions(
-    grid: &Grid,
+    steps: &Steps,
     least: usize,
     is_member: impl Fn(usize) -> bool,
     is_wanted: impl Fn(usize) -> bool,
 ) -> Vec<bool> {
-    let mut seen = vec![false; grid.len()];
-    let mut large = vec![false; grid.len()];
-    for first in 0..grid.len() {
-        if seen[first] || !is_member(first) {
-            continue;
-        }
-        seen[first] = true;
-        let mut region = vec![first];
-        let mut done = 0;
-        while let Some(&at) = region.get(done) {
-            done += 1;
-            for next in neighbours(grid, at) {
-                if !seen[next] && is_member(next) {
-                    seen[next] = true;
-                    region.push(next);
-                }
-            }
-        }
+    let mut large = vec![false; steps.grid().len()];
+    for region in steps.regions(is_member) {
         if region.len() >= least && region.iter().any(|i| is_wanted(*i)) {
             region.into_iter().for_each(|i| large[i] = true);
         }
@@ -83,21 +71,13 @@ pub(crate) fn regions(
     large
 }
 
-fn neighbours(grid: &Grid, index: usize) -> impl Iterator<Item = usize> {
-    let Cell { x, y } = grid.cell(index);
-    let grid = *grid;
-    [(x, y - 1), (x - 1, y), (x + 1, y), (x, y + 1)]
-        .into_iter()
-        .filter_map(move |(x, y)| grid.index(Cell::new(x, y)))
-}
-
-/// The cells of the passage that ends at `last`, without the one from which it begins.
-fn way_back(previous: &[usize], last: usize) -> Vec<usize> {
-    let mut way = Vec::new();
+/// The cells of the passage whose last but one is `last`, from the one from which it begins.
+fn way_from(previous: &[usize], last: usize, beyond: usize) -> Vec<usize> {
+    let mut way = vec![beyond, last];
     let mut at = last;
     while previous[at] != at {
-        way.push(at);
         at = previous[at];
+        way.push(at);
     }
     way.reverse();
     way
@@ -119,10 +99,11 @@ mod tests {
         let cells = &cells;
         let is = |what: u8| move |i: usize| cells[i] == what;
         let travel_cost = |i: usize| (cells[i] == b'r').then(|| (i % width + i / width) as f64);
-        let passage = nearest_passage(&grid, longest, travel_cost, is(b'?'), is(b'b'));
+        let any = |_, _| true;
+        let passage = nearest_passage(&grid, longest, travel_cost, is(b'?'), any, is(b'b'));
         let drawn = passage.map(|passage| {
             let mut drawn: Vec<u8> = picture.bytes().collect();
-            passage.iter().for_each(|i| drawn[i + i / width] = b'o');
+            passage.iter().filter(|i| cells[**i] == b'?').for_each(|i| drawn[i + i / width] = b'o');
             String::from_utf8(drawn).unwrap()
         });
         assert_eq!(drawn.as_deref(), expected);
@@ -131,7 +112,7 @@ mod tests {
     #[test]
     fn the_passage_is_the_nearest_that_is_short_enough() {
         let wall = "rr???bb\nrrr??bb\nrrr??bb\nrrrr?bb\n";
-        check(3, wall, Some("rrooobb\nrrr??bb\nrrr??bb\nrrrr?bb\n"));
+        check(3, wall, Some("rr???bb\nrrroobb\nrrr??bb\nrrrr?bb\n"));
         check(2, wall, Some("rr???bb\nrrroobb\nrrr??bb\nrrrr?bb\n"));
         check(1, wall, Some("rr???bb\nrrr??bb\nrrr??bb\nrrrrobb\n"));
         check(0, wall, None);

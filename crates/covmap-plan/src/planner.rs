@@ -15,7 +15,7 @@ use crate::{
     BodyEvidence, CandidateRecord, Decision, PlannerError, PlannerParameters, Scope, Stencil,
     Strategy, TravelCosts, expected_information_gain, travel_costs,
 };
-use covmap::{Cell, Change, CoverageMap, Grid, Raster};
+use covmap::{Cell, Change, CoverageMap, Grid, Raster, step_between};
 use covmap_model::{SensorModel, cells_under_body, intercepted};
 use covmap_sonar::Scan;
 use nalgebra::Point2;
@@ -181,10 +181,17 @@ impl Planner {
         }
     }
 
-    /// Takes note that the robot bumped into something when it entered a cell: it is blocked
-    /// for good.
-    pub fn bump_at(&mut self, cell: Cell) {
-        self.traversable.bump_at(cell);
+    /// Takes note that the robot drove from the centre of one cell to that of a neighbour, where
+    /// it stands now: it can always drive that step again, and back.
+    pub fn drove(&mut self, from: Cell, to: Cell) {
+        self.traversable.drive(from, to);
+        self.stand_on(to);
+    }
+
+    /// Takes note that the robot bumped into something when it drove from one cell to a
+    /// neighbour: that step is closed, and the cell is blocked unless the robot stood there.
+    pub fn bump(&mut self, from: Cell, to: Cell) {
+        self.traversable.bump(from, to);
         self.target = None;
     }
 
@@ -248,7 +255,7 @@ impl Planner {
     /// out, unless the robot can reach none but those that one scan spends: it measures
     /// again until it can leave, or there is no reason left.
     pub(crate) fn candidates(&mut self, from: Cell) -> Candidates {
-        let costs = travel_costs(&self.grid, from, |index| self.traversable.at(index));
+        let costs = travel_costs(self.traversable.steps(), from);
         let mut reached = ViewPoints::new(&self.grid);
         costs.reached().for_each(|index| reached.insert(index));
         self.beams.refresh_sight(&mut self.cells, &reached);
@@ -260,12 +267,12 @@ impl Planner {
 
     /// What L(c) would be beyond the nearest passage that looks blocked but was not tried,
     /// for a robot that can reach no candidate; `None` if there is no such passage.
+    ///
+    /// Cells at which the robot never bumped come first; then all, by steps at which it did not.
     fn candidates_beyond_a_passage(&mut self, from: Cell) -> Option<Candidates> {
-        let longest = self.parameters.longest_passage(self.grid.resolution());
-        if longest == 0 {
-            return None;
-        }
-        let here = travel_costs(&self.grid, from, |index| self.traversable.at(index));
+        let longest = self.parameters.longest_passage(self.grid.resolution())?;
+        let steps = self.traversable.steps();
+        let here = travel_costs(steps.clone(), from);
         let is_cut_off = |i: usize| self.traversable.at(i) && here.cost(i).is_none();
         let mut wanted = ViewPoints::new(&self.grid);
         (0..self.grid.len()).filter(|i| is_cut_off(*i)).for_each(|i| wanted.insert(i));
@@ -273,21 +280,30 @@ impl Planner {
         let is_candidate =
             |i: usize| is_cut_off(i) && !self.measured.is_spent(i) && self.beams.has_reason(i);
         let least = ROOM * self.traversable.body_cells();
-        let rooms = regions(&self.grid, least, is_cut_off, is_candidate);
-        let may_open =
-            |i: usize| !rooms[i] && self.traversable.may_open(i) && !self.exploration.is_outside(i);
-        let passage = nearest_passage(
-            &self.grid,
-            longest,
-            |i| here.cost(i).map(|d| d / self.grid.resolution()),
-            may_open,
-            |i| rooms[i],
-        )?;
-        let mut open: Vec<bool> = (0..self.grid.len()).map(|i| self.traversable.at(i)).collect();
-        passage.iter().for_each(|i| open[*i] = true);
-        let costs = travel_costs(&self.grid, from, |i| open[i]);
+        let rooms = regions(&steps, least, is_cut_off, is_candidate);
+        let nearest = |only_untried: bool| {
+            nearest_passage(
+                &self.grid,
+                longest,
+                |i| here.cost(i).map(|d| d / self.grid.resolution()),
+                |i| {
+                    (!only_untried || self.traversable.is_untried(i))
+                        && !self.exploration.is_outside(i)
+                },
+                |i, step| !self.traversable.is_barred(i, step),
+                |i| rooms[i],
+            )
+        };
+        let passage = nearest(true).or_else(|| nearest(false))?;
+        let mut open = steps;
+        for ends in passage.windows(2) {
+            let step = step_between(self.grid.cell(ends[0]), self.grid.cell(ends[1]))?;
+            open.open(ends[0], step);
+        }
+        let costs = travel_costs(open, from);
         let is_reached = |i: &usize| is_candidate(*i) && costs.cost(*i).is_some();
         let indices = (0..self.grid.len()).filter(is_reached).collect();
+        let passage = passage[1..passage.len() - 1].to_vec();
         Some(Candidates { indices, costs, passage })
     }
 

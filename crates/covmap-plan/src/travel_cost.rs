@@ -3,43 +3,37 @@
 mod label;
 #[cfg(test)]
 mod plain;
+mod pruning;
 mod spread;
-mod steps;
 
-use covmap::{Cell, Grid};
+use covmap::{Cell, Steps, neighbour, opposite};
 use label::{Label, in_cells};
 use spread::Spread;
-use steps::{STEPS, allowed, neighbourhoods};
 
 /// The shortest ways from one cell to all that can be reached from it.
 #[derive(Debug, Clone)]
 pub struct TravelCosts {
-    grid: Grid,
     labels: Vec<Label>,
-    /// The steps that lead from each cell to a traversable one.
-    near: Vec<u8>,
+    steps: Steps,
 }
 
-/// The shortest ways from `source` over traversable cells to all others: eight neighbours,
-/// steps of 1 and √2 cells, and no corner cut: a diagonal step needs both cells beside it.
-///
-/// The source itself need not be traversable.
+/// The shortest ways from `source` to all cells to which steps lead; a straight step is as long
+/// as the side of a cell, a diagonal one √2 times that.
 ///
 /// # Panics
 /// If the source lies outside the grid.
-pub fn travel_costs(grid: &Grid, source: Cell, traversable: impl Fn(usize) -> bool) -> TravelCosts {
-    let source = grid.index(source).and_then(|index| u32::try_from(index).ok());
+pub fn travel_costs(steps: Steps, source: Cell) -> TravelCosts {
+    let source = steps.grid().index(source).and_then(|index| u32::try_from(index).ok());
     let source = source.unwrap_or_else(|| panic!("the source lies outside the grid"));
-    let near = neighbourhoods(grid, traversable);
-    let labels = Spread::new(&near, grid.width()).from(source);
-    TravelCosts { grid: *grid, labels, near }
+    let labels = Spread::new(&steps).from(source);
+    TravelCosts { labels, steps }
 }
 
 impl TravelCosts {
     /// d_c of the cell with a row-major index \[m\]; `None` if it cannot be reached. Equal
     /// lengths are equal to the last bit, however they came about.
     pub fn cost(&self, index: usize) -> Option<f64> {
-        in_cells(self.labels[index]).map(|length| length * self.grid.resolution())
+        in_cells(self.labels[index]).map(|length| length * self.steps.grid().resolution())
     }
 
     /// All cells that can be reached, by their row-major index, in ascending order.
@@ -63,11 +57,12 @@ impl TravelCosts {
     /// the one whose last step comes from the nearest cell, the first of these in row-major
     /// order, and so on back to the source.
     pub fn path_to(&self, cell: Cell) -> Option<Vec<Cell>> {
-        let mut at = self.grid.index(cell)?;
+        let grid = *self.steps.grid();
+        let mut at = grid.index(cell)?;
         self.cost(at)?;
         let mut path = Vec::new();
         while let Some(previous) = self.previous(at) {
-            path.push(self.grid.cell(at));
+            path.push(grid.cell(at));
             at = previous;
         }
         path.reverse();
@@ -79,11 +74,9 @@ impl TravelCosts {
         // Diagonal steps are longer, so they come from nearer cells.
         const NEAREST_FIRST: [usize; 8] = [1, 3, 7, 5, 2, 0, 4, 6];
         let comes_by = |step: usize| {
-            let (dx, dy) = STEPS[step];
-            let back = -(dy as isize * self.grid.width().cast_signed() + dx as isize);
-            let from = at.checked_add_signed(back).filter(|from| *from < self.near.len())?;
-            let is_step = allowed(self.near[from]) & (1 << step) != 0;
-            let length = if step.is_multiple_of(2) { label::STRAIGHT } else { label::DIAGONAL };
+            let from = neighbour(self.steps.grid(), at, opposite(step))?;
+            let is_step = self.steps.from(from) >> step & 1 == 1;
+            let length = label::of_step(step);
             (is_step && label::is_sum(self.labels[at], self.labels[from], length)).then_some(from)
         };
         NEAREST_FIRST.into_iter().find_map(comes_by)
@@ -93,6 +86,7 @@ impl TravelCosts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use covmap::Grid;
     use nalgebra::Point2;
 
     /// Costs in tenths of a cell from `S` over `.`, `##` where nothing can stand.
@@ -104,7 +98,7 @@ mod tests {
         let at = |cell: Cell| rows[height - 1 - cell.y as usize][cell.x as usize];
         let last = |side: usize| i32::try_from(side).unwrap();
         let source = grid.cells().find(|c| at(*c) == 'S').unwrap();
-        let costs = travel_costs(&grid, source, |i| at(grid.cell(i)) != '#');
+        let costs = travel_costs(Steps::between(&grid, |i| at(grid.cell(i)) != '#'), source);
         let text = |cell| {
             costs
                 .cost(grid.index(cell).unwrap())
@@ -118,14 +112,14 @@ mod tests {
     }
 
     #[test]
-    fn the_way_leads_round_obstacles_and_cuts_no_corner() {
+    fn the_way_leads_round_obstacles() {
         check(
             "....
              .##.
              S#..",
-            "20 30 40 50
-             10 ## ## 60
-             00 ## 80 70",
+            "20 24 34 44
+             10 ## ## 48
+             00 ## 62 58",
         );
     }
 

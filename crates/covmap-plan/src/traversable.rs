@@ -1,21 +1,27 @@
-//! Where the robot can stand.
+//! Where the robot can stand, and go.
 
-use covmap::{Cell, Grid};
+use covmap::{Cell, Grid, STEPS, Steps, opposite, step_between};
 
-/// Which view-points the robot can stand on.
+/// Which view-points the robot can stand on, and which steps lead from one to the next.
 ///
 /// Choice: a view-point is traversable if its cell is known with a most likely coverage of
 /// at most `traversable_coverage`, and no known cell of more has its centre nearer than the
 /// robot's radius. (Up to the nearest edge of such cells instead, doors of .8 m are closed at
-/// r = .1 m by one wrong cell at either post; the price is more bumps.) Where the robot stood it
-/// can stand again; where it bumped it cannot. An unknown cell whose centre was under the
-/// robot's body counts as free: on coarse grids it is too near for the sensors and too large
-/// to be under the body entirely.
+/// r = .1 m by one wrong cell at either post; the price is more bumps.) A step leads from one to
+/// the next if no such centre is under the body on the way. An unknown cell whose centre was
+/// under the robot's body counts as free: on coarse grids it is too near for the sensors and too
+/// large to be under the body entirely.
+///
+/// What the body tried outweighs what the map says: a step that it has driven is possible in
+/// both directions, one at which it bumped is not, and where it stood it can stand again. A
+/// cell that it bumped at, and never stood on, is no view-point.
 #[derive(Debug, Clone)]
 pub(crate) struct Traversable {
     grid: Grid,
     /// Cells that block a view-point, relative to it.
     disc: Vec<(i32, i32)>,
+    /// Cells that block a step, relative to where it begins, and neither of its ends.
+    between: [Vec<(i32, i32)>; 4],
     /// How many blocking cells are too near to each view-point.
     blockers: Vec<u32>,
     blocking: Vec<bool>,
@@ -24,33 +30,71 @@ pub(crate) struct Traversable {
     under_body: Vec<bool>,
     stood: Vec<bool>,
     bumped: Vec<bool>,
+    /// The steps from each cell that were driven, and those that ended with a bump.
+    driven: Vec<u8>,
+    barred: Vec<u8>,
+    /// The cells from which there is a driven or a barred step.
+    tried: Vec<usize>,
 }
 
 impl Traversable {
     pub(crate) fn new(grid: Grid, radius: f64) -> Self {
         let r = grid.resolution();
         #[allow(clippy::cast_possible_truncation, reason = "a robot is some cells wide")]
-        let reach = (radius / r).ceil().min(200.0) as i32;
-        let near =
-            |&(dx, dy): &(i32, i32)| libm::hypot(f64::from(dx), f64::from(dy)) * r < radius - 1e-9;
-        let square = (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
+        let reach = (radius / r).ceil().min(200.0) as i32 + 1;
+        let square = || (-reach..=reach).flat_map(|dy| (-reach..=reach).map(move |dx| (dx, dy)));
+        let touches = |step, at| distance_from_step(step, at) * r < radius - 1e-9;
+        let at_an_end = |(dx, dy): (i32, i32), (x, y): (i32, i32)| {
+            touches((0, 0), (x, y)) || touches((0, 0), (x - dx, y - dy))
+        };
+        let between = |k: usize| {
+            let on_the_way = |at: &(i32, i32)| touches(STEPS[k], *at) && !at_an_end(STEPS[k], *at);
+            square().filter(on_the_way).collect()
+        };
         let none = vec![false; grid.len()];
         Self {
             grid,
-            disc: square.filter(near).collect(),
+            disc: square().filter(|at| touches((0, 0), *at)).collect(),
+            between: std::array::from_fn(between),
             blockers: vec![0; grid.len()],
             blocking: none.clone(),
             free: none.clone(),
             under_body: none.clone(),
             stood: none.clone(),
             bumped: none,
+            driven: vec![0; grid.len()],
+            barred: vec![0; grid.len()],
+            tried: Vec::new(),
         }
     }
 
     /// Whether the robot can stand on the view-point with a row-major index.
     pub(crate) fn at(&self, index: usize) -> bool {
-        let open = self.free[index] || self.under_body[index];
-        !self.bumped[index] && (self.stood[index] || open && self.blockers[index] == 0)
+        self.stood[index] || !self.bumped[index] && self.seems_open(index)
+    }
+
+    fn seems_open(&self, index: usize) -> bool {
+        (self.free[index] || self.under_body[index]) && self.blockers[index] == 0
+    }
+
+    /// The steps that the robot can take.
+    pub(crate) fn steps(&self) -> Steps {
+        let mut steps = Steps::between(&self.grid, |index| self.at(index));
+        for (step, between) in self.between.iter().enumerate().filter(|(_, b)| !b.is_empty()) {
+            let blocks = |at: &Cell| {
+                let blocking = |&(dx, dy)| self.grid.index(at.offset(dx, dy));
+                between.iter().filter_map(blocking).any(|i| self.blocking[i])
+            };
+            for (index, _) in self.grid.cells().enumerate().filter(|(_, at)| blocks(at)) {
+                steps.close(index, step);
+            }
+        }
+        let set = |steps: u8| (0..8).filter(move |step| steps >> step & 1 == 1);
+        for &index in &self.tried {
+            set(self.driven[index]).for_each(|step| steps.open(index, step));
+            set(self.barred[index]).for_each(|step| steps.close(index, step));
+        }
+        steps
     }
 
     /// How many cells' centres are under the body.
@@ -58,9 +102,27 @@ impl Traversable {
         self.disc.len()
     }
 
-    /// Whether a view-point that looks blocked may turn out to be open: nobody bumped there.
-    pub(crate) fn may_open(&self, index: usize) -> bool {
+    /// Whether the robot did not try yet what lies at a view-point: it never bumped there.
+    pub(crate) fn is_untried(&self, index: usize) -> bool {
         !self.bumped[index]
+    }
+
+    /// Whether the robot bumped when it took a step.
+    pub(crate) fn is_barred(&self, from: usize, step: usize) -> bool {
+        self.barred[from] >> step & 1 == 1
+    }
+
+    /// What keeps the robot from standing on the view-point with a row-major index, if anything.
+    pub(crate) fn obstacle(&self, index: usize) -> Option<Obstacle> {
+        if self.at(index) {
+            None
+        } else if self.bumped[index] {
+            Some(Obstacle::Bump)
+        } else if self.blockers[index] > 0 {
+            Some(Obstacle::Covered)
+        } else {
+            Some(Obstacle::Unknown)
+        }
     }
 
     /// Takes over what is known of a cell: `Some(true)` if the robot may drive over it,
@@ -112,12 +174,59 @@ impl Traversable {
         }
     }
 
-    /// The robot bumped into something when it entered a cell.
-    pub(crate) fn bump_at(&mut self, cell: Cell) {
-        if let Some(index) = self.grid.index(cell) {
+    /// The robot drove from one cell to a neighbour.
+    pub(crate) fn drive(&mut self, from: Cell, to: Cell) {
+        self.try_step(from, to, |t| (&mut t.driven, &mut t.barred));
+    }
+
+    /// The robot bumped into something when it drove from one cell to a neighbour.
+    pub(crate) fn bump(&mut self, from: Cell, to: Cell) {
+        self.try_step(from, to, |t| (&mut t.barred, &mut t.driven));
+        if let Some(index) = self.grid.index(to).filter(|_| from != to) {
             self.bumped[index] = true;
         }
     }
+
+    /// Takes note, in both directions, of how a step ended: the last time counts.
+    fn try_step(
+        &mut self,
+        from: Cell,
+        to: Cell,
+        sets: fn(&mut Self) -> (&mut Vec<u8>, &mut Vec<u8>),
+    ) {
+        let Some(step) = step_between(from, to) else { return };
+        let ends = [(self.grid.index(from), step), (self.grid.index(to), opposite(step))];
+        let [(Some(from), step), (Some(to), back)] = ends else { return };
+        for index in [from, to] {
+            if self.driven[index] | self.barred[index] == 0 {
+                self.tried.push(index);
+            }
+        }
+        let (so, not) = sets(self);
+        for (index, step) in [(from, step), (to, back)] {
+            so[index] |= 1 << step;
+            not[index] &= !(1 << step);
+        }
+    }
+}
+
+/// What keeps the robot from a view-point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Obstacle {
+    /// It bumped there.
+    Bump,
+    /// A known cell under its body would be covered.
+    Covered,
+    /// The cell is unknown.
+    Unknown,
+}
+
+/// How far a place is from the line of a step that begins at the origin [cells].
+fn distance_from_step((dx, dy): (i32, i32), (x, y): (i32, i32)) -> f64 {
+    let [dx, dy, x, y] = [dx, dy, x, y].map(f64::from);
+    let squared = dx * dx + dy * dy;
+    let along = if squared > 0.0 { ((x * dx + y * dy) / squared).clamp(0.0, 1.0) } else { 0.0 };
+    libm::hypot(x - along * dx, y - along * dy)
 }
 
 #[cfg(test)]
@@ -138,7 +247,7 @@ mod tests {
         assert_eq!(picture(&traversable), "...#####....");
         assert_eq!(closed.len(), 5);
         traversable.stand_on(Cell::new(3, 0));
-        traversable.bump_at(Cell::new(0, 0));
+        traversable.bump(Cell::new(1, 0), Cell::new(0, 0));
         assert_eq!(picture(&traversable), "#...####....");
         traversable.update(5, Some(true), |_| ());
         assert_eq!(picture(&traversable), "#...........");
@@ -152,5 +261,56 @@ mod tests {
         assert_eq!([0, 1, 2].map(|i| traversable.at(i)), [false, true, false]);
         traversable.cover(Cell::new(2, 0));
         assert_eq!([0, 1, 2].map(|i| traversable.at(i)), [false, true, true]);
+    }
+
+    /// Which of the eight steps from the middle of 3 × 3 cells are possible.
+    fn steps_from_the_middle(t: &Traversable) -> u8 {
+        t.steps().from(4)
+    }
+
+    fn all_free(resolution: f64) -> Traversable {
+        let grid = Grid::new(Point2::origin(), resolution, 3, 3).unwrap();
+        let mut traversable = Traversable::new(grid, 0.27);
+        (0..9).for_each(|i| traversable.update(i, Some(true), |_| ()));
+        traversable
+    }
+
+    #[test]
+    fn the_last_time_that_a_step_was_tried_counts_in_both_directions() {
+        let mut t = all_free(0.5);
+        let (middle, corner) = (Cell::new(1, 1), Cell::new(2, 2));
+        t.bump(middle, corner);
+        assert_eq!(steps_from_the_middle(&t), 0b1111_1101);
+        assert!(!t.at(8) && !t.is_untried(8) && t.is_barred(8, 5));
+        // From another side the body got there, and may go back; not as it bumped.
+        t.stand_on(corner);
+        t.drive(Cell::new(2, 1), corner);
+        assert!(t.at(8) && t.steps().from(8) == 0b0101_0000);
+        t.drive(corner, middle);
+        assert_eq!((steps_from_the_middle(&t), t.steps().from(8)), (0xff, 0b0111_0000));
+    }
+
+    #[test]
+    fn a_step_that_the_body_has_driven_is_possible_whatever_the_map_says() {
+        let mut t = all_free(0.2);
+        t.drive(Cell::new(1, 1), Cell::new(2, 2));
+        (0..9).for_each(|i| t.update(i, Some(false), |_| ()));
+        assert_eq!((steps_from_the_middle(&t), t.steps().from(8)), (0b10, 0b10_0000));
+    }
+
+    #[test]
+    fn a_diagonal_needs_room_for_the_body_and_not_the_cells_beside_it() {
+        // Of cells of .5 m the body is over neither side of a diagonal, .354 m away; of .3 m it
+        // is over both, .212 m away, but at neither end; of .2 m it is over them at both ends.
+        for (resolution, steps) in [(0.5, 0b1111_1110), (0.3, 0b0111_1100), (0.2, 0b0111_1100)] {
+            let mut t = all_free(resolution);
+            t.update(5, Some(false), |_| ());
+            assert_eq!(steps_from_the_middle(&t), steps, "{resolution}");
+        }
+        // Where nothing is known beside it, it is tried.
+        let grid = Grid::new(Point2::origin(), 0.2, 2, 2).unwrap();
+        let mut t = Traversable::new(grid, 0.27);
+        [0, 3].into_iter().for_each(|i| t.update(i, Some(true), |_| ()));
+        assert_eq!(t.steps().from(0), 0b10);
     }
 }

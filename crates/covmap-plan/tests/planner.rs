@@ -349,10 +349,12 @@ fn a_passage_that_looks_blocked_is_tried_when_nothing_else_is_left() {
         assert!(!decision.passage.is_empty() && decision.passage.len() <= 8);
         assert!(decision.passage.iter().all(|cell| decision.path.contains(cell)));
         assert!(s.map.grid().center(decision.target).x > -0.3);
-        s.planner.bump_at(decision.passage[0]);
+        let first = decision.path.iter().position(|cell| *cell == decision.passage[0]).unwrap();
+        let before = if first == 0 { home } else { decision.path[first - 1] };
+        s.planner.bump(before, decision.passage[0]);
         tries += 1;
     }
-    assert!((2..=120).contains(&tries), "{tries}");
+    assert!((2..=300).contains(&tries), "{tries}");
 }
 
 #[test]

@@ -2,15 +2,11 @@
 
 use crate::drive::Drive;
 use crate::world::World;
-use covmap::{Cell, Grid, Raster};
+use covmap::{Cell, Grid, Raster, STEPS, Steps, neighbour};
 use nalgebra::{Isometry2, Point2, Vector2};
 use rayon::prelude::*;
-use std::collections::VecDeque;
 use std::f64::consts::TAU;
 
-/// The neighbours of a cell.
-const NEIGHBORS: [(i32, i32); 8] =
-    [(1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1)];
 /// A cell this full is solid.
 const SOLID: f64 = 0.5;
 /// Lengths that differ by less are equal [m].
@@ -32,22 +28,17 @@ impl World {
     /// largest free component, with heading 0.
     ///
     /// A cell is free if its coverage is 0 and a disc of `radius` \[m\] fits at its centre;
-    /// components are connected over eight neighbours. Ties go to the first in row-major
-    /// order. `None` if no cell is free.
+    /// in a component the disc gets from each cell to any other by its [steps](Self::steps).
+    /// Ties go to the first in row-major order. `None` if no cell is free.
     pub fn default_start(&self, coverage: &Raster<f64>, radius: f64) -> Option<Isometry2<f64>> {
         let grid = *coverage.grid();
-        let clearance = self.clearances(&grid, |i| coverage[i] <= 0.0);
-        let free = |i: usize| clearance[i] >= radius && coverage[i] <= 0.0;
-        let mut seen = Raster::filled(grid, false);
-        let mut largest: Vec<usize> = Vec::new();
-        for start in 0..grid.len() {
-            if free(start) && !seen[start] {
-                let component = flood(&grid, vec![start], &mut seen, |_, to| free(to));
-                if component.len() > largest.len() {
-                    largest = component;
-                }
-            }
-        }
+        let clearance = self.clearances(&grid);
+        let regions = self
+            .steps_over(&grid, &clearance, radius)
+            .regions(|i| clearance[i] >= radius && coverage[i] <= 0.0);
+        // The first of the largest.
+        let largest = regions.into_iter().reduce(|a, b| if b.len() > a.len() { b } else { a });
+        let mut largest = largest?;
         largest.sort_unstable();
         let roomier =
             |best: usize, i: usize| if clearance[i] > clearance[best] + EQUAL { i } else { best };
@@ -55,28 +46,54 @@ impl World {
         Some(Isometry2::new(grid.center(grid.cell(best)).coords, 0.0))
     }
 
-    /// The cells whose centres a disc of `radius` \[m\] truly reaches from `start`, by
-    /// straight drives to the centres of neighbours, eight of them, without a bump.
+    /// The steps that a disc of `radius` \[m\] can take without a bump.
+    pub fn steps(&self, grid: &Grid, radius: f64) -> Steps {
+        self.steps_over(grid, &self.clearances(grid), radius)
+    }
+
+    fn steps_over(&self, grid: &Grid, clearance: &[f64], radius: f64) -> Steps {
+        let center = |index: usize| grid.center(grid.cell(index));
+        let mut steps = Steps::between(grid, |i| clearance[i] >= radius);
+        let longest = grid.resolution() * std::f64::consts::SQRT_2;
+        // Half of the steps: the others are the same, back.
+        let bumps = |from: usize| -> Vec<(usize, usize)> {
+            if !(radius..radius + longest).contains(&clearance[from]) {
+                return Vec::new();
+            }
+            let to =
+                |step: usize| neighbour(grid, from, step).filter(|to| clearance[*to] >= radius);
+            let bumps = |step: &usize| {
+                to(*step).is_some_and(|to| {
+                    self.drive(center(from), center(to), radius) != Drive::Arrived
+                })
+            };
+            (0..STEPS.len() / 2).filter(bumps).map(|step| (from, step)).collect()
+        };
+        let closed: Vec<Vec<(usize, usize)>> = (0..grid.len()).into_par_iter().map(bumps).collect();
+        closed.into_iter().flatten().for_each(|(from, step)| steps.close(from, step));
+        steps
+    }
+
+    /// The cells whose centres a disc of `radius` \[m\] truly reaches from `start`, by its
+    /// [steps](Self::steps).
     ///
-    /// From the start itself it drives to the centre of its cell and of that cell's neighbours.
+    /// It begins at the centre of the start's cell; or, if it cannot get there, from the start
+    /// itself with steps to the centres of that cell's neighbours.
     pub fn reachable_cells(&self, grid: &Grid, start: Point2<f64>, radius: f64) -> Raster<bool> {
-        let clearance = self.clearances(grid, |_| true);
-        let step = grid.resolution() * std::f64::consts::SQRT_2;
-        let arrives = |from, to| self.drive(from, to, radius) == Drive::Arrived;
-        let fits = |i: usize| clearance[i] >= radius;
-        let mut reached = Raster::filled(*grid, false);
-        let home = grid.unbounded_cell_at(start);
-        let around = [(0, 0)].iter().chain(&NEIGHBORS).map(|&(x, y)| home.offset(x, y));
-        let first = around
-            .filter_map(|cell| grid.index(cell))
-            .filter(|&i| fits(i) && arrives(start, grid.center(grid.cell(i))))
-            .collect();
-        flood(grid, first, &mut reached, |from, to| {
-            fits(to)
-                && (clearance[from] >= radius + step
-                    || arrives(grid.center(grid.cell(from)), grid.center(grid.cell(to))))
-        });
-        reached
+        let Some(home) = grid.cell_at(start).and_then(|cell| grid.index(cell)) else {
+            return Raster::filled(*grid, false);
+        };
+        let clearance = self.clearances(grid);
+        let arrives = |i: usize| {
+            clearance[i] >= radius
+                && self.drive(start, grid.center(grid.cell(i)), radius) == Drive::Arrived
+        };
+        let steps = self.steps_over(grid, &clearance, radius);
+        if arrives(home) {
+            return steps.reached([home]);
+        }
+        let around = (0..STEPS.len()).filter_map(|step| neighbour(grid, home, step));
+        steps.reached(around.filter(|i| arrives(*i)))
     }
 
     /// What is seen within `range` \[m\] from the centres of the cells that hold some places;
@@ -134,9 +151,9 @@ impl World {
         })
     }
 
-    /// The clearance at the centres of cells; 0 where it is not asked for.
-    fn clearances(&self, grid: &Grid, wanted: impl Fn(usize) -> bool + Sync) -> Vec<f64> {
-        let clearance = |i| if wanted(i) { self.clearance(grid.center(grid.cell(i))) } else { 0.0 };
+    /// The clearance at the centre of every cell.
+    fn clearances(&self, grid: &Grid) -> Vec<f64> {
+        let clearance = |i| self.clearance(grid.center(grid.cell(i)));
         (0..grid.len()).into_par_iter().map(clearance).collect()
     }
 }
@@ -145,31 +162,6 @@ fn add(all: &mut Raster<bool>, part: &Raster<bool>) {
     for (all, part) in all.values_mut().iter_mut().zip(part.values()) {
         *all |= part;
     }
-}
-
-/// Marks and returns what is connected with the cells `first` over steps that are `open`.
-fn flood(
-    grid: &Grid,
-    first: Vec<usize>,
-    seen: &mut Raster<bool>,
-    open: impl Fn(usize, usize) -> bool,
-) -> Vec<usize> {
-    for &i in &first {
-        seen[i] = true;
-    }
-    let mut queue = VecDeque::from(first);
-    let mut component = Vec::new();
-    while let Some(from) = queue.pop_front() {
-        component.push(from);
-        let cell = grid.cell(from);
-        for to in NEIGHBORS.iter().filter_map(|&(x, y)| grid.index(cell.offset(x, y))) {
-            if !seen[to] && open(from, to) {
-                seen[to] = true;
-                queue.push_back(to);
-            }
-        }
-    }
-    component
 }
 
 /// Directions all around, half a cell apart at full range.

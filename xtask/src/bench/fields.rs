@@ -4,7 +4,7 @@ use super::clock::race;
 use super::table::{Row, Table};
 use super::{Measuring, tiles};
 use anyhow::{Context, Result};
-use covmap::{Cell, Grid};
+use covmap::{Cell, Grid, Steps};
 use covmap_plan::{TravelCosts, travel_costs};
 use pathfinding::num_traits::Zero;
 use petgraph::graph::{NodeIndex, UnGraph};
@@ -15,7 +15,7 @@ use std::ops::Add;
 /// The steps to the right or up, of which the others are the reverse.
 const FORWARD: [(i32, i32); 4] = [(1, 0), (-1, 1), (0, 1), (1, 1)];
 
-/// What can be walked on, with the rules of `travel_costs`.
+/// What can be walked on, with the steps of `travel_costs`.
 struct Floor {
     grid: Grid,
     free: Vec<bool>,
@@ -30,11 +30,7 @@ impl Floor {
     /// Where a step leads, and how long it is.
     fn step(&self, from: Cell, (dx, dy): (i32, i32)) -> Option<(u32, f64)> {
         let to = self.at(from.offset(dx, dy))?;
-        if dx == 0 || dy == 0 {
-            return Some((to, 1.0));
-        }
-        let passes = self.at(from.offset(dx, 0)).and(self.at(from.offset(0, dy))).is_some();
-        passes.then_some((to, SQRT_2))
+        Some((to, if dx == 0 || dy == 0 { 1.0 } else { SQRT_2 }))
     }
 
     fn steps(&self, from: u32) -> impl Iterator<Item = (u32, f64)> {
@@ -110,7 +106,7 @@ pub(super) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
     let source = grid.cell_at(start.translation.vector.into()).context("the start is inside")?;
     let from = floor.at(source).context("the start is free")?;
 
-    let ours = || travel_costs(&grid, source, |i| floor.free[i]);
+    let ours = || travel_costs(Steps::between(&grid, |i| floor.free[i]), source);
     let field = ours();
     let graph = floor.graph();
     let petgraph = || petgraph::algo::dijkstra(&graph, from.into(), None, |e| *e.weight());

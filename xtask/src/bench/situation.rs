@@ -78,11 +78,12 @@ impl<'a> Situation<'a> {
         for cell in &decision.path {
             let (from, to) = (self.grid.center(self.at), self.grid.center(*cell));
             if self.robot.drive(from, to) != Drive::Arrived {
-                self.planner.bump_at(*cell);
+                self.planner.bump(self.at, *cell);
                 break;
             }
             seconds += self.moved(from, to);
-            self.stand(*cell);
+            self.planner.drove(self.at, *cell);
+            self.at = *cell;
         }
         seconds + self.scan()
     }

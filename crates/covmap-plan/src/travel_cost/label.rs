@@ -21,6 +21,11 @@ pub(super) const STRAIGHT: Label = P << 8;
 /// The length of a diagonal step.
 pub(super) const DIAGONAL: Label = Q << 8;
 
+/// The length of one of [`covmap::STEPS`].
+pub(super) fn of_step(step: usize) -> Label {
+    if step.is_multiple_of(2) { STRAIGHT } else { DIAGONAL }
+}
+
 /// Offers a cell a way of some length that ends with a step. Returns whether it is better
 /// than what was known, or as good and new.
 #[inline]

@@ -1,8 +1,7 @@
 //! Dijkstra's algorithm as in the books, cell by cell: what the fast one is tested against.
 
-use super::steps::STEPS;
 use super::travel_costs;
-use covmap::{Cell, Grid};
+use covmap::{Cell, Grid, STEPS, Steps};
 use nalgebra::Point2;
 use proptest::prelude::*;
 use std::f64::consts::SQRT_2;
@@ -31,8 +30,8 @@ impl Way {
 }
 
 /// The shortest ways; of equally short ones that from the cell that was done first.
-fn dijkstra(grid: &Grid, source: Cell, free: &[bool]) -> Vec<Option<Way>> {
-    let is_free = |cell: Cell| grid.index(cell).is_some_and(|i| free[i]);
+fn dijkstra(steps: &Steps, source: Cell) -> Vec<Option<Way>> {
+    let grid = *steps.grid();
     let mut ways: Vec<Option<Way>> = vec![None; grid.len()];
     let mut open = vec![grid.index(source).unwrap()];
     ways[open[0]] = Some(Way { straight: 0, diagonal: 0, previous: None });
@@ -43,12 +42,8 @@ fn dijkstra(grid: &Grid, source: Cell, free: &[bool]) -> Vec<Option<Way>> {
         });
         let at = open.swap_remove(nearest.unwrap());
         let cell = grid.cell(at);
-        for (dx, dy) in STEPS {
-            let is_diagonal = dx != 0 && dy != 0;
-            let beside = [cell.offset(dx, 0), cell.offset(0, dy)];
-            let passes =
-                is_free(cell.offset(dx, dy)) && (!is_diagonal || beside.into_iter().all(is_free));
-            if !passes {
+        for (step, (dx, dy)) in STEPS.into_iter().enumerate() {
+            if steps.from(at) >> step & 1 == 0 {
                 continue;
             }
             let next = grid.index(cell.offset(dx, dy)).unwrap();
@@ -69,13 +64,19 @@ proptest! {
     #[test]
     fn ways_are_those_of_dijkstra(
         width in 1..24usize, height in 1..24usize, blocked in 0..70u32,
-        dice in prop::collection::vec(0..100u32, 24 * 24), source in 0..24 * 24usize
+        dice in prop::collection::vec(0..100u32, 24 * 24), source in 0..24 * 24usize,
+        exceptions in prop::collection::vec((0..24 * 24usize, 0..8usize, any::<bool>()), 0..20)
     ) {
         let grid = Grid::new(Point2::origin(), 0.1, width, height).unwrap();
         let free: Vec<bool> = dice[..grid.len()].iter().map(|d| *d >= blocked).collect();
         let source = grid.cell(source % grid.len());
-        let ours = travel_costs(&grid, source, |i| free[i]);
-        let plain = dijkstra(&grid, source, &free);
+        let mut steps = Steps::between(&grid, |i| free[i]);
+        for (from, step, open) in exceptions {
+            let from = from % grid.len();
+            if open { steps.open(from, step) } else { steps.close(from, step) }
+        }
+        let ours = travel_costs(steps.clone(), source);
+        let plain = dijkstra(&steps, source);
         for (index, way) in plain.iter().enumerate() {
             let cell = grid.cell(index);
             match (way, ours.cost(index)) {

@@ -1,12 +1,10 @@
 //! Filling a grid with the lengths of shortest ways.
 
 use super::label::{self, Label, UNREACHED};
-use super::steps::{STEPS, allowed, onward, steps_in};
+use super::pruning::{OPEN, onward, steps_in};
+use covmap::{STEPS, Steps};
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
-
-/// All eight neighbours are traversable.
-const OPEN: u8 = u8::MAX;
 
 /// Ways that spread over a grid.
 ///
@@ -16,7 +14,8 @@ const OPEN: u8 = u8::MAX;
 /// was no longer, so what is left in the end are the shortest lengths, in whatever order the
 /// ways ran.
 pub(super) struct Spread<'a> {
-    near: &'a [u8],
+    steps: &'a Steps,
+    masks: &'a [u16],
     /// From a cell to its neighbours in row-major order.
     offsets: [isize; 8],
     labels: Vec<Label>,
@@ -27,12 +26,13 @@ pub(super) struct Spread<'a> {
 type Turn = (Label, u32, u8);
 
 impl<'a> Spread<'a> {
-    pub(super) fn new(near: &'a [u8], width: usize) -> Self {
-        let width = width.cast_signed();
+    pub(super) fn new(steps: &'a Steps) -> Self {
+        let width = steps.grid().width().cast_signed();
         Self {
-            near,
+            steps,
+            masks: steps.masks(),
             offsets: STEPS.map(|(dx, dy)| dy as isize * width + dx as isize),
-            labels: vec![UNREACHED; near.len()],
+            labels: vec![UNREACHED; steps.grid().len()],
             turns: BinaryHeap::new(),
         }
     }
@@ -41,7 +41,7 @@ impl<'a> Spread<'a> {
     pub(super) fn from(mut self, source: u32) -> Vec<Label> {
         let at = source as usize;
         self.labels[at] = 0;
-        self.turns.push(Reverse((0, source, allowed(self.near[at]))));
+        self.turns.push(Reverse((0, source, self.steps.from(at))));
         while let Some(Reverse((length, at, turn))) = self.turns.pop() {
             let at = at as usize;
             if label::length(length) > label::length(self.labels[at]) {
@@ -60,32 +60,40 @@ impl<'a> Spread<'a> {
 
     fn diagonal(&mut self, mut at: usize, mut length: Label, step: usize) {
         let sides = [(step + 7) % 8, (step + 1) % 8];
-        while allowed(self.near[at]) & (1 << step) != 0 {
+        let tried = sides.iter().fold(1 << step, |set, side| set | 1 << side);
+        while self.masks[at] & (1 << step) != 0 {
             at = at.wrapping_add_signed(self.offsets[step]);
             length += label::DIAGONAL;
             if !label::improve(&mut self.labels[at], length, step) {
                 return;
             }
             sides.into_iter().for_each(|side| self.straight(at, length, side));
+            self.turn(at, length, step, tried);
         }
     }
 
     fn straight(&mut self, mut at: usize, mut length: Label, step: usize) {
-        let mut near = self.near[at];
-        while near & (1 << step) != 0 {
+        while self.masks[at] & (1 << step) != 0 {
             at = at.wrapping_add_signed(self.offsets[step]);
             length += label::STRAIGHT;
             if !label::improve(&mut self.labels[at], length, step) {
                 return;
             }
-            near = self.near[at];
-            if near != OPEN {
-                let turn = onward(near, step) & !(1 << step);
-                if turn != 0 {
-                    #[allow(clippy::cast_possible_truncation, reason = "at most 2e7 cells")]
-                    self.turns.push(Reverse((length, at as u32, turn)));
-                }
-            }
+            self.turn(at, length, step, 1 << step);
+        }
+    }
+
+    /// Lets those steps wait that go on from where a step has led, but for those `tried` at once.
+    #[inline]
+    fn turn(&mut self, at: usize, length: Label, step: usize, tried: u8) {
+        let mask = self.masks[at];
+        if mask == OPEN {
+            return;
+        }
+        let turn = onward(mask, step) & !tried;
+        if turn != 0 {
+            #[allow(clippy::cast_possible_truncation, reason = "at most 2e7 cells")]
+            self.turns.push(Reverse((length, at as u32, turn)));
         }
     }
 }
