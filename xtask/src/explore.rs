@@ -7,7 +7,7 @@ use crate::trace_file::TraceWriter;
 use crate::{input, results, say};
 use anyhow::Result;
 use covmap_explore::{
-    Config, Ending, Limits, Mission, Run, SimulatedRobot, Summary, TraceHeader, explore,
+    Config, CutOff, Ending, Limits, Mission, Run, SimulatedRobot, Summary, TraceHeader, explore,
 };
 use covmap_io::OutputFolder;
 use covmap_world::World;
@@ -101,7 +101,7 @@ fn exit_code(ending: Ending) -> u8 {
     match ending {
         Ending::Explored => 0,
         Ending::BudgetSpent => 3,
-        Ending::StartBlocked => 4,
+        Ending::StartBlocked | Ending::BoxedIn | Ending::NothingHeard => 4,
         Ending::Interrupted => interrupt::EXIT_CODE,
     }
 }
@@ -112,6 +112,8 @@ pub(crate) fn in_words(ending: Ending) -> &'static str {
         Ending::Explored => "explored: nothing is open",
         Ending::BudgetSpent => "the budget of scans is spent, and something is still open",
         Ending::StartBlocked => "nothing is open, but the robot could not leave its start",
+        Ending::BoxedIn => "nothing is open, but the robot is boxed in where it stands",
+        Ending::NothingHeard => "nothing is open, but no sensor ever answered",
         Ending::Interrupted => "interrupted",
     }
 }
@@ -124,14 +126,47 @@ fn report(summary: &Summary, written: &Path) {
         summary.scans, summary.decisions, summary.path_length_m, summary.bumps, summary.seconds
     ));
     let cells = &summary.cells;
+    let not_seen = match cells.not_seen {
+        0 => String::new(),
+        count => format!(", {count} not seen yet"),
+    };
     say::line(format!(
-        "  cells: {} resolved, {} exhausted, {} open, {} unreachable",
+        "  cells: {} resolved, {} exhausted, {} open, {} unreachable{not_seen}",
         cells.resolved, cells.exhausted, cells.open, cells.unreachable
     ));
+    let recall =
+        [("rough", summary.score.wall_recall_rough), ("smooth", summary.score.wall_recall_smooth)];
+    let by_surface: Vec<String> = recall
+        .iter()
+        .filter_map(|(surface, share)| Some(format!("{surface} {}", percent((*share)?))))
+        .collect();
     say::line(format!(
-        "  completeness {}, wall recall {}",
+        "  completeness {}, wall recall {} ({})",
         percent(summary.score.completeness),
-        percent(summary.score.wall_recall)
+        percent(summary.score.wall_recall),
+        by_surface.join(", ")
     ));
+    if summary.cut_off.cells > 0 {
+        say::line(format!("  {}", cut_off(&summary.cut_off, summary.resolution)));
+    }
     say::line(format!("  {}", written.display()));
+}
+
+/// What is cut off, and what cuts it off.
+fn cut_off(cut_off: &CutOff, resolution: f64) -> String {
+    #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
+    let area = cut_off.cells as f64 * resolution * resolution;
+    let bars = [
+        (cut_off.bumps, "bumps"),
+        (cut_off.phantoms, "phantoms"),
+        (cut_off.passages, "passages that look too narrow"),
+        (cut_off.unknown, "unknown cells"),
+    ];
+    let bars = bars.iter().filter(|(count, _)| *count > 0);
+    let bars: Vec<String> = bars.map(|(count, what)| format!("{count} {what}")).collect();
+    let bars = if bars.is_empty() { "no way that it knows".to_owned() } else { bars.join(", ") };
+    format!(
+        "cut off: {} cells ({area:.1} m²) that the robot could truly reach were not found free; in the way: {bars}",
+        cut_off.cells
+    )
 }

@@ -2,7 +2,7 @@
 
 use crate::explore::in_words;
 use anyhow::Result;
-use covmap::{CoverageMap, Raster};
+use covmap::{Cell, CoverageMap, Raster};
 use covmap_explore::{Mission, Run, Summary, Truth};
 use covmap_io::{ColorMap, Key, Marker, Picture, Rgb, coverage_color};
 use covmap_model::{OccupancyGrid, OccupancyParameters};
@@ -12,6 +12,48 @@ use nalgebra::Point2;
 const PATH_WIDTH: f64 = 2.5;
 const START_SIZE: f64 = 16.0;
 const END_SIZE: f64 = 24.0;
+const BUMP_SIZE: f64 = 7.0;
+/// A cell of which at least this much is covered is a wall.
+const HALF: f64 = 0.5;
+
+/// What the map makes of a cell, against the truth.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Verdict {
+    Wall,
+    Free,
+    MissedWall,
+    Phantom,
+    Unknown,
+    Hidden,
+}
+
+impl Verdict {
+    const ALL: [Self; 6] =
+        [Self::Wall, Self::Free, Self::MissedWall, Self::Phantom, Self::Unknown, Self::Hidden];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::Wall => "wall, as it is",
+            Self::Free => "free, as it is",
+            Self::MissedWall => "missed wall",
+            Self::Phantom => "phantom: covered only in the map",
+            Self::Unknown => "could be seen, not known",
+            Self::Hidden => "out of sight",
+        }
+    }
+
+    /// Told apart by brightness, too.
+    fn color(self) -> Rgb {
+        match self {
+            Self::Wall => Rgb(60, 66, 76),
+            Self::Free => Rgb(250, 250, 250),
+            Self::MissedWall => Rgb::RED,
+            Self::Phantom => Rgb::ORANGE,
+            Self::Unknown => Rgb(160, 170, 184),
+            Self::Hidden => Rgb(222, 227, 233),
+        }
+    }
+}
 
 /// All that the pictures of a run show.
 pub(crate) struct Pictures<'a> {
@@ -68,6 +110,39 @@ impl Pictures<'_> {
         picture
     }
 
+    /// The map against the truth, and where the robot bumped.
+    pub(crate) fn errors(&self, bumps: &[Point2<f64>]) -> Picture {
+        let mut picture = self.begin("the map against the truth");
+        let verdicts = Raster::from_fn(self.mission.grid, |cell| self.verdict(cell));
+        picture.cells(&verdicts, |verdict| verdict.color());
+        for verdict in Verdict::ALL {
+            let count = verdicts.values().iter().filter(|v| **v == verdict).count();
+            picture.key(Key::Fill(verdict.color()), &format!("{}: {count}", verdict.name()));
+        }
+        for at in bumps {
+            picture.marker(*at, Marker::Disc, Rgb::BLUE, BUMP_SIZE);
+        }
+        let bumps = format!("bumps, where the robot's centre was: {}", bumps.len());
+        picture.key(Key::Marker(Marker::Disc, Rgb::BLUE), &bumps);
+        picture
+    }
+
+    fn verdict(&self, cell: Cell) -> Verdict {
+        let is = |raster: &Raster<bool>| raster.get(cell) == Some(&true);
+        let map = &self.run.map;
+        let covered = map.is_known(cell) && map.mode(cell) >= HALF;
+        let solid = self.truth.coverage.get(cell).is_some_and(|c| *c >= HALF);
+        let matters = is(&self.truth.observable);
+        match (solid, covered) {
+            (false, true) if matters || is(&self.truth.reachable) => Verdict::Phantom,
+            _ if !matters => Verdict::Hidden,
+            (true, false) if is(&self.truth.first_solid) => Verdict::MissedWall,
+            _ if !map.is_known(cell) => Verdict::Unknown,
+            (true, _) => Verdict::Wall,
+            _ => Verdict::Free,
+        }
+    }
+
     /// The log-odds occupancy grid of the same scans.
     pub(crate) fn occupancy(&self) -> Result<Picture> {
         let (_, model) = self.mission.config.build()?;
@@ -92,8 +167,12 @@ impl Pictures<'_> {
             (CellStatus::Exhausted, counts.exhausted, "exhausted"),
             (CellStatus::Open, counts.open, "open"),
             (CellStatus::Unreachable, counts.unreachable, "unreachable"),
+            (CellStatus::NotSeen, counts.not_seen, "not seen yet"),
             (CellStatus::Outside, counts.outside, "outside"),
         ] {
+            if status == CellStatus::NotSeen && count == 0 {
+                continue;
+            }
             picture.key(Key::Fill(status_color(status)), &format!("{name}: {count}"));
         }
         picture
@@ -172,6 +251,7 @@ fn status_color(status: CellStatus) -> Rgb {
         CellStatus::Exhausted => Rgb::ORANGE,
         CellStatus::Open => Rgb::RED,
         CellStatus::Unreachable => Rgb(96, 106, 120),
+        CellStatus::NotSeen => Rgb(166, 180, 200),
         CellStatus::Outside => Rgb(228, 232, 237),
     }
 }

@@ -5,7 +5,7 @@ use crate::input::about;
 use crate::pictures::Pictures;
 use anyhow::Result;
 use covmap::CoverageMap;
-use covmap_explore::{Run, Summary, Truth};
+use covmap_explore::{CutOff, Run, Summary, Truth};
 use covmap_io::{CoverageThresholds, OutputFolder, save_map_server, write_json};
 
 /// Writes a map: the whole posterior, and what is most likely for map_server.
@@ -29,13 +29,22 @@ pub(crate) fn write(
     let truth = Truth::new(world, mission);
     let score = truth.score(&run.map, &truth.scored_cells(world, mission, run));
     let strategy = &mission.config.planner.strategy;
-    let summary = Summary::new(world.name(), strategy, *seed, run, &score, seconds, hash);
+    let summary = Summary::new(
+        world.name(),
+        strategy,
+        *seed,
+        run,
+        (&score, CutOff::new(&truth, mission, run)),
+        seconds,
+        hash,
+    );
 
     write_map(folder, &run.map)?;
     let pictures = Pictures { mission, run, truth: &truth, summary: &summary };
     pictures.coverage().save(folder.path("coverage.png"))?;
     pictures.entropy().save(folder.path("entropy.png"))?;
     pictures.truth().save(folder.path("truth.png"))?;
+    pictures.errors(&run.bumped_at).save(folder.path("errors.png"))?;
     pictures.occupancy()?.save(folder.path("occupancy.png"))?;
     pictures.certificate().save(folder.path("certificate.png"))?;
     // Last: whoever finds it finds all the others.

@@ -28,6 +28,7 @@
 //! ```
 
 mod config;
+mod cut_off;
 mod mission;
 mod overridden;
 mod robot;
@@ -39,6 +40,7 @@ mod summary;
 mod trace;
 
 pub use config::{Config, ConfigError, RobotParameters};
+pub use cut_off::CutOff;
 pub use mission::{Limits, Mission, MissionError};
 pub use overridden::OverrideError;
 pub use robot::{RecordedRobot, Robot, SimulatedRobot};

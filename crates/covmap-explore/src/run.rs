@@ -2,9 +2,9 @@
 
 use crate::{Event, Mission, MissionError, Robot};
 use covmap::{Cell, CoverageMap, Raster};
-use covmap_model::{SensorModel, integrate, integrate_body};
-use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner};
-use covmap_sonar::Scan;
+use covmap_model::{Body, SensorModel, integrate};
+use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Reach};
+use covmap_sonar::{Range, Scan};
 use covmap_world::Drive;
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
@@ -19,6 +19,11 @@ pub enum Ending {
     BudgetSpent,
     /// Nothing is open, but the robot could not leave the cell that it started in.
     StartBlocked,
+    /// Nothing is open, but in the end the robot could reach no more than what one scan spends,
+    /// or could not move at all.
+    BoxedIn,
+    /// Nothing is open, but no sensor answered in the whole run: there was not one echo.
+    NothingHeard,
     /// Whoever watched the run stopped it.
     Interrupted,
 }
@@ -32,6 +37,8 @@ pub struct Run {
     pub map: CoverageMap,
     /// What became of every cell.
     pub certificate: Raster<CellStatus>,
+    /// Where the robot could drive, as it saw it in the end.
+    pub reach: Raster<Reach>,
     /// Every scan, in order.
     pub scans: Vec<Scan>,
     /// The corners of the driven path \[m\].
@@ -40,8 +47,8 @@ pub struct Run {
     pub path_length: f64,
     /// How many decisions were made.
     pub decisions: usize,
-    /// How often the robot bumped into something.
-    pub bumps: usize,
+    /// Where the robot's centre was when it bumped into something \[m\].
+    pub bumped_at: Vec<Point2<f64>>,
     /// How many candidates had a negative expected information gain, over all decisions.
     pub negative_gains: usize,
     /// How many scans were counted for each cell: those that should have told something
@@ -94,6 +101,7 @@ struct Explorer<'a, R, H> {
     hook: &'a mut H,
     model: SensorModel,
     map: CoverageMap,
+    body: Body,
     planner: Planner,
     at: Point2<f64>,
     cell: Cell,
@@ -109,7 +117,7 @@ struct Explorer<'a, R, H> {
     trajectory: Vec<Point2<f64>>,
     path_length: f64,
     decisions: usize,
-    bumps: usize,
+    bumped_at: Vec<Point2<f64>>,
     negative_gains: usize,
 }
 
@@ -136,6 +144,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
             hook,
             model,
             map,
+            body: Body::new(*grid, config.robot.radius),
             planner,
             at,
             cell,
@@ -147,7 +156,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
             trajectory: vec![at],
             path_length: 0.0,
             decisions: 0,
-            bumps: 0,
+            bumped_at: Vec::new(),
             negative_gains: 0,
         })
     }
@@ -166,8 +175,21 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
                 self.scan()?;
             }
         }
-        let stuck = !self.left_start && !self.planner.can_move(self.cell);
-        ControlFlow::Continue(if stuck { Ending::StartBlocked } else { Ending::Explored })
+        ControlFlow::Continue(self.ending())
+    }
+
+    /// How a run ended after which nothing is open.
+    fn ending(&self) -> Ending {
+        let answers = |scan: &Scan| scan.ranges.iter().any(|r| matches!(r, Range::Echo(_)));
+        if !self.scans.iter().any(answers) {
+            Ending::NothingHeard
+        } else if !self.planner.is_confined(self.cell) {
+            Ending::Explored
+        } else if self.left_start {
+            Ending::BoxedIn
+        } else {
+            Ending::StartBlocked
+        }
     }
 
     fn is_budget_spent(&self) -> bool {
@@ -193,6 +215,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         let time = self.path_length / self.mission.config.robot.speed;
         let scan = Scan { pose, time, ranges: self.robot.sense(&pose) };
         let changes = integrate(&self.model, &mut self.map, &scan);
+        let changes = self.body.hold(&mut self.map, changes);
         self.planner.observe(&self.map, &scan, &changes);
         self.since_scan = 0.0;
         self.scans.push(scan.clone());
@@ -237,8 +260,9 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
                 Drive::Arrived => self.advance(goal),
                 Drive::Bumped { at } => {
                     self.advance(at);
-                    self.bumps += 1;
+                    self.bumped_at.push(at);
                     self.planner.bump(self.cell, cell);
+                    self.body_touched(at, goal);
                     let event = Event::Bump { cell, at, towards: goal };
                     self.advance(home);
                     self.report(event)?;
@@ -267,12 +291,24 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
     }
 
     fn body_was_between(&mut self, from: Point2<f64>, to: Point2<f64>) {
-        let config = &self.mission.config;
-        let changes = match config.planner.body_evidence {
-            BodyEvidence::Belief => integrate_body(&mut self.map, from, to, config.robot.radius),
-            BodyEvidence::PlannerOnly | BodyEvidence::Off => Vec::new(),
+        let changes = if self.believes_its_body() {
+            self.body.moved(&mut self.map, from, to)
+        } else {
+            Vec::new()
         };
         self.planner.body_moved(&self.map, from, to, &changes);
+    }
+
+    /// The body stopped at something on its way to a goal.
+    fn body_touched(&mut self, at: Point2<f64>, goal: Point2<f64>) {
+        if self.believes_its_body() {
+            let changes = self.body.touched(&mut self.map, at, goal - at);
+            self.planner.body_moved(&self.map, at, at, &changes);
+        }
+    }
+
+    fn believes_its_body(&self) -> bool {
+        self.mission.config.planner.body_evidence == BodyEvidence::Belief
     }
 
     fn report(&mut self, event: Event) -> ControlFlow<()> {
@@ -290,13 +326,14 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         Run {
             ending,
             certificate: self.planner.certificate(&self.map, self.cell),
+            reach: self.planner.reach(self.cell),
             counts: self.planner.counted_scans(),
             map: self.map,
             scans: self.scans,
             trajectory: self.trajectory,
             path_length: self.path_length,
             decisions: self.decisions,
-            bumps: self.bumps,
+            bumped_at: self.bumped_at,
             negative_gains: self.negative_gains,
             capped_cells: self.planner.capped_cells(),
         }

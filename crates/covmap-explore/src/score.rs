@@ -1,13 +1,15 @@
 //! A map against the truth.
 
 use crate::{Mission, Run};
-use covmap::{Cell, CoverageMap, LIKELIHOOD_FLOOR, Raster, log_likelihood};
+use covmap::{Cell, CoverageMap, LIKELIHOOD_FLOOR, Raster, Steps, log_likelihood};
 use covmap_world::World;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
 /// A cell of which at least this much is covered is solid.
 const SOLID: f64 = 0.5;
+/// A cell of which at most this much is covered is free.
+const FREE: f64 = 0.2;
 
 /// What there truly is, and what of it the robot could have known.
 #[derive(Debug, Clone)]
@@ -18,6 +20,10 @@ pub struct Truth {
     pub reachable: Raster<bool>,
     /// The first solid cells that can be seen from there within the usable range.
     pub first_solid: Raster<bool>,
+    /// Those of them with a smooth surface in sight, which mirrors sound.
+    pub first_smooth: Raster<bool>,
+    /// The steps that the robot can truly take.
+    pub steps: Steps,
     /// The cells that can be seen from there within the usable range, and the first solid
     /// ones: the same for every strategy.
     pub observable: Raster<bool>,
@@ -30,6 +36,10 @@ pub struct Score {
     pub completeness: f64,
     /// The share of the first solid cells that are known with a mode of at least ½.
     pub wall_recall: f64,
+    /// The same, of those with only rough surfaces in sight; `None` if there are none.
+    pub wall_recall_rough: Option<f64>,
+    /// The same, of those with a smooth surface in sight; `None` if there are none.
+    pub wall_recall_smooth: Option<f64>,
     /// The share of the truly reachable cells with a mode of at least ½.
     pub phantom: f64,
     /// Mean absolute error of the most likely coverage over the scored cells.
@@ -53,7 +63,9 @@ impl Truth {
         let observable = Raster::from_fn(*grid, |cell| {
             [&seen.in_sight, &seen.first_solid].iter().any(|r| r.get(cell) == Some(&true))
         });
-        Self { coverage, reachable, first_solid: seen.first_solid, observable }
+        let (first_solid, first_smooth) = (seen.first_solid, seen.first_smooth);
+        let steps = world.steps(grid, config.robot.radius);
+        Self { coverage, reachable, first_solid, first_smooth, steps, observable }
     }
 
     /// The cells whose error counts: within the usable range and in sight of a pose of the
@@ -68,12 +80,24 @@ impl Truth {
         cells.filter(|cell| !run.map.is_pinned(*cell)).collect()
     }
 
+    /// Whether a map knows a cell to be free: with a mode of at most .2.
+    pub fn is_known_free(map: &CoverageMap, cell: Cell) -> bool {
+        map.is_known(cell) && map.mode(cell) <= FREE + 1e-9
+    }
+
     /// Scores a map over the cells that count.
     pub fn score(&self, map: &CoverageMap, scored: &[Cell]) -> Score {
-        let share = |among: &Raster<bool>, good: &dyn Fn(Cell) -> bool| {
-            let all: Vec<Cell> = among.iter().filter(|(_, a)| **a).map(|(cell, _)| cell).collect();
+        let those = |among: &Raster<bool>| -> Vec<Cell> {
+            among.iter().filter(|(_, a)| **a).map(|(cell, _)| cell).collect()
+        };
+        let share = |all: &[Cell], good: &dyn Fn(Cell) -> bool| {
             mean(all.iter().map(|cell| f64::from(good(*cell))))
         };
+        let is_wall = |cell| map.is_known(cell) && map.mode(cell) >= SOLID;
+        let (reachable, walls) = (those(&self.reachable), those(&self.first_solid));
+        let (smooth, rough): (Vec<Cell>, Vec<Cell>) =
+            walls.iter().partition(|cell| self.first_smooth.get(**cell) == Some(&true));
+        let recall = |walls: &[Cell]| (!walls.is_empty()).then(|| share(walls, &is_wall));
         let over = |f: &dyn Fn(Cell, f64) -> f64| {
             let value = |cell: &Cell| f(*cell, self.coverage.get(*cell).copied().unwrap_or(1.0));
             mean(scored.iter().map(value))
@@ -81,9 +105,11 @@ impl Truth {
         // What is not known scores as uniform.
         let mode = |cell| if map.is_known(cell) { map.mode(cell) } else { 0.5 };
         Score {
-            completeness: share(&self.reachable, &|c| map.is_known(c) && map.mode(c) <= 0.2 + 1e-9),
-            wall_recall: share(&self.first_solid, &|c| map.is_known(c) && map.mode(c) >= SOLID),
-            phantom: share(&self.reachable, &|c| map.is_known(c) && map.mode(c) >= SOLID),
+            completeness: share(&reachable, &|c| Self::is_known_free(map, c)),
+            wall_recall: share(&walls, &is_wall),
+            wall_recall_rough: recall(&rough),
+            wall_recall_smooth: recall(&smooth),
+            phantom: share(&reachable, &is_wall),
             mae_mode: over(&|cell, truth| (mode(cell) - truth).abs()),
             mae_mean: over(&|cell, truth| (map.mean(cell) - truth).abs()),
             mean_log_likelihood: over(&|cell, truth| {

@@ -1,6 +1,6 @@
 //! The numbers of a run.
 
-use crate::{Ending, Run, Score};
+use crate::{CutOff, Ending, Run, Score};
 use covmap_plan::{CellStatus, Strategy};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +15,8 @@ pub struct CellCounts {
     pub open: usize,
     /// Out of sight.
     pub unreachable: usize,
+    /// Not in sight yet, when the run was stopped.
+    pub not_seen: usize,
     /// Outside the extent.
     pub outside: usize,
 }
@@ -28,6 +30,7 @@ impl CellCounts {
             exhausted: count(CellStatus::Exhausted),
             open: count(CellStatus::Open),
             unreachable: count(CellStatus::Unreachable),
+            not_seen: count(CellStatus::NotSeen),
             outside: count(CellStatus::Outside),
         }
     }
@@ -59,6 +62,8 @@ pub struct Summary {
     /// How good the map is.
     #[serde(flatten)]
     pub score: Score,
+    /// What was left unseen of what the robot could truly reach.
+    pub cut_off: CutOff,
     /// Candidates with E\[I\] < 0, over all decisions.
     pub negative_gains: usize,
     /// Cells given up by the cap on counted scans.
@@ -76,7 +81,7 @@ impl Summary {
         strategy: &Strategy,
         seed: u64,
         run: &Run,
-        score: &Score,
+        (score, cut_off): (&Score, CutOff),
         seconds: f64,
         trace_hash: String,
     ) -> Self {
@@ -88,10 +93,11 @@ impl Summary {
             ending: run.ending,
             scans: run.scans.len(),
             decisions: run.decisions,
-            bumps: run.bumps,
+            bumps: run.bumped_at.len(),
             path_length_m: run.path_length,
             cells: CellCounts::of(run.certificate.values()),
             score: *score,
+            cut_off,
             negative_gains: run.negative_gains,
             capped_cells: run.capped_cells,
             seconds,

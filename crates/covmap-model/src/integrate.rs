@@ -78,16 +78,16 @@ pub fn integrate_body(
 /// from `from` to `to`, in row-major order.
 pub fn cells_under_body(grid: &Grid, from: Point2<f64>, to: Point2<f64>, radius: f64) -> Vec<Cell> {
     let margin = Vector2::repeat(radius);
-    let low = grid.unbounded_cell_at(from.inf(&to) - margin);
-    let high = grid.unbounded_cell_at(from.sup(&to) + margin);
-    let side = |n: usize| i32::try_from(n).unwrap_or(i32::MAX) - 1;
-    let rows = low.y.max(0)..=high.y.min(side(grid.height()));
-    let columns = low.x.max(0)..=high.x.min(side(grid.width()));
-    let cells = rows.flat_map(|y| columns.clone().map(move |x| Cell::new(x, y)));
+    let cells = grid.cells_between(from.inf(&to) - margin, from.sup(&to) + margin);
     cells.filter(|cell| is_under_body(grid.center(*cell), from, to, radius)).collect()
 }
 
-fn is_under_body(point: Point2<f64>, from: Point2<f64>, to: Point2<f64>, radius: f64) -> bool {
+pub(crate) fn is_under_body(
+    point: Point2<f64>,
+    from: Point2<f64>,
+    to: Point2<f64>,
+    radius: f64,
+) -> bool {
     let way = to - from;
     let along = (point - from).dot(&way) / way.norm_squared();
     let along = if along.is_finite() { along.clamp(0.0, 1.0) } else { 0.0 };
@@ -112,7 +112,7 @@ pub fn intercepted(model: &SensorModel, grid: &Grid, scan: &Scan) -> Vec<(Cell, 
 }
 
 /// One change for each cell, in row-major order.
-fn merge(mut changes: Vec<Change>) -> Vec<Change> {
+pub(crate) fn merge(mut changes: Vec<Change>) -> Vec<Change> {
     changes.sort_by_key(|change| change.cell);
     changes.dedup_by(|later, kept| {
         let same = later.cell == kept.cell;

@@ -25,6 +25,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod body;
 mod footprint;
 mod integrate;
 mod occupancy;
@@ -33,6 +34,7 @@ mod registers;
 mod scan_counts;
 mod sensor_model;
 
+pub use body::Body;
 pub use footprint::{Footprint, FootprintCell, FootprintError, FootprintRule};
 pub use integrate::{
     cells_under_body, integrate, integrate_body, integrate_literally, intercepted,

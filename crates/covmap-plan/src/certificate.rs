@@ -1,8 +1,27 @@
-//! What the planner says of the cells: the certificate, and counts for progress and reports.
+//! What the planner says of the cells: the certificate, what it can reach, and counts for progress.
 
 use crate::exploration::InSight;
-use crate::{CellStatus, Planner};
-use covmap::{Cell, CoverageMap, Raster};
+use crate::{CellStatus, Planner, travel_costs};
+use covmap::{Cell, CoverageMap, Raster, neighbour};
+use serde::{Deserialize, Serialize};
+
+/// A known cell of at least this coverage ends what may still come into sight.
+const OPAQUE: f64 = 0.5;
+
+/// Whether the robot can drive to the centre of a cell, as far as it knows; and if not, why.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Reach {
+    /// It can.
+    Reached,
+    /// It could stand there, but no way is open.
+    CutOff,
+    /// It bumped there.
+    Bumped,
+    /// A known cell under its body would be covered.
+    Covered,
+    /// The cell is unknown.
+    Unknown,
+}
 
 impl Planner {
     /// What became of every cell, for a robot in the cell `from`: explored means that none
@@ -19,10 +38,56 @@ impl Planner {
                 }
             }
         }
-        Raster::from_fn(self.grid, |cell| {
+        let mut certificate = Raster::from_fn(self.grid, |cell| {
             let index = self.grid.index(cell).unwrap_or(0);
             let (known, entropy) = (map.is_known(cell), map.entropy(cell));
             self.exploration.status(index, known, entropy, in_sight[index])
+        });
+        if certificate.values().contains(&CellStatus::Open) {
+            let reached: Vec<usize> = candidates.costs.reached().collect();
+            self.mark_not_seen(map, reached, &mut certificate);
+        }
+        certificate
+    }
+
+    /// Of a run that is not over, tells cells that may come into sight from those that are out of
+    /// sight for good: what hangs together with places in reach, over cells that are not known to
+    /// be covered, and what ends it.
+    fn mark_not_seen(
+        &self,
+        map: &CoverageMap,
+        mut front: Vec<usize>,
+        certificate: &mut Raster<CellStatus>,
+    ) {
+        let mut seen = vec![false; self.grid.len()];
+        front.iter().for_each(|index| seen[*index] = true);
+        while let Some(at) = front.pop() {
+            if certificate[at] == CellStatus::Unreachable {
+                certificate[at] = CellStatus::NotSeen;
+            }
+            let cell = self.grid.cell(at);
+            if map.is_known(cell) && map.mode(cell) >= OPAQUE || self.exploration.is_outside(at) {
+                continue;
+            }
+            let sides = [0, 2, 4, 6].into_iter().filter_map(|step| neighbour(&self.grid, at, step));
+            for next in sides {
+                if !std::mem::replace(&mut seen[next], true) {
+                    front.push(next);
+                }
+            }
+        }
+    }
+
+    /// Where a robot in the cell `from` can drive, and what keeps it from all else.
+    pub fn reach(&self, from: Cell) -> Raster<Reach> {
+        let costs = travel_costs(self.traversable.steps(), from);
+        Raster::from_fn(self.grid, |cell| {
+            let index = self.grid.index(cell).unwrap_or(0);
+            if costs.cost(index).is_some() {
+                Reach::Reached
+            } else {
+                self.traversable.obstacle(index)
+            }
         })
     }
 
@@ -62,8 +127,13 @@ impl Planner {
         self.exploration.counted_scans(self.grid)
     }
 
-    /// Whether a step leads the robot out of the cell that it is in.
-    pub fn can_move(&self, from: Cell) -> bool {
-        self.grid.index(from).is_some_and(|i| self.traversable.steps().from(i) != 0)
+    /// Whether all that a robot in the cell `from` can reach is spent by one scan: it is shut in.
+    pub fn is_confined(&self, from: Cell) -> bool {
+        let reached: Vec<usize> = travel_costs(self.traversable.steps(), from).reached().collect();
+        let spends_all = |at: &usize| {
+            let at = self.grid.cell(*at);
+            reached.iter().all(|i| self.grid.cell(*i) == at || self.measured.is_near(*i, at))
+        };
+        reached.len() <= self.measured.most_spent() && reached.iter().any(spends_all)
     }
 }

@@ -20,6 +20,9 @@ pub enum CellStatus {
     Open,
     /// Out of sight of all view-points that can be reached, or out of scope.
     Unreachable,
+    /// Of a run that was stopped while cells were open: out of sight so far, but not cut off from
+    /// what is in sight.
+    NotSeen,
 }
 
 /// From what kind of reachable view-point a cell is in sight within its limit.

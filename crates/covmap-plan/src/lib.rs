@@ -39,6 +39,7 @@ mod traversable;
 mod view_points;
 mod window;
 
+pub use certificate::Reach;
 pub use decision::{CandidateRecord, Decision};
 pub use exploration::CellStatus;
 pub use gain::expected_information_gain;

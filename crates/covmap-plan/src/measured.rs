@@ -40,6 +40,13 @@ impl Measured {
         distance <= self.spacing - ROUNDING
     }
 
+    /// One scan spends at most so many view-points.
+    pub(crate) fn most_spent(&self) -> usize {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+        let side = (2.0 * self.spacing / self.grid.resolution()).clamp(0.0, 1e4) as usize + 1;
+        side * side
+    }
+
     pub(crate) fn is_spent(&self, index: usize) -> bool {
         self.spent[index]
     }

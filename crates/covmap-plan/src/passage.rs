@@ -1,6 +1,57 @@
 //! Places that may be a passage though they look blocked.
 
-use covmap::{Grid, Steps, neighbour};
+use crate::planner::{Candidates, Planner};
+use crate::travel_costs;
+use crate::view_points::ViewPoints;
+use covmap::{Cell, Grid, Steps, neighbour, step_between};
+
+/// A passage is worth trying if beyond it the robot could stand on so many times the area of
+/// its body, about a square metre: pockets behind bumps are not.
+const ROOM: usize = 4;
+
+impl Planner {
+    /// What L(c) would be beyond the nearest passage that looks blocked but was not tried,
+    /// for a robot that can reach no candidate; `None` if there is no such passage.
+    ///
+    /// Cells at which the robot never bumped come first; then all, by steps at which it did not.
+    pub(crate) fn candidates_beyond_a_passage(&mut self, from: Cell) -> Option<Candidates> {
+        let longest = self.parameters().longest_passage(self.grid.resolution())?;
+        let steps = self.traversable.steps();
+        let here = travel_costs(steps.clone(), from);
+        let is_cut_off = |i: usize| self.traversable.at(i) && here.cost(i).is_none();
+        let mut wanted = ViewPoints::new(&self.grid);
+        (0..self.grid.len()).filter(|i| is_cut_off(*i)).for_each(|i| wanted.insert(i));
+        self.beams.refresh_sight(&mut self.cells, &wanted);
+        let is_candidate =
+            |i: usize| is_cut_off(i) && !self.measured.is_spent(i) && self.beams.has_reason(i);
+        let least = ROOM * self.traversable.body_cells();
+        let rooms = regions(&steps, least, is_cut_off, is_candidate);
+        let nearest = |only_untried: bool| {
+            nearest_passage(
+                &self.grid,
+                longest,
+                |i| here.cost(i).map(|d| d / self.grid.resolution()),
+                |i| {
+                    (!only_untried || self.traversable.is_untried(i))
+                        && !self.exploration.is_outside(i)
+                },
+                |i, step| !self.traversable.is_barred(i, step),
+                |i| rooms[i],
+            )
+        };
+        let passage = nearest(true).or_else(|| nearest(false))?;
+        let mut open = steps;
+        for ends in passage.windows(2) {
+            let step = step_between(self.grid.cell(ends[0]), self.grid.cell(ends[1]))?;
+            open.open(ends[0], step);
+        }
+        let costs = travel_costs(open, from);
+        let is_reached = |i: &usize| is_candidate(*i) && costs.cost(*i).is_some();
+        let indices = (0..self.grid.len()).filter(is_reached).collect();
+        let passage = passage[1..passage.len() - 1].to_vec();
+        Some(Candidates { indices, costs, passage })
+    }
+}
 
 /// A way that nobody tried, from a cell that the robot can reach to one of what lies beyond:
 /// its cells by their row-major index, with both.

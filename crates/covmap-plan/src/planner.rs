@@ -6,7 +6,6 @@ use crate::decision::{REPORTED, Score, best};
 use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
 use crate::onlookers::Mark;
-use crate::passage::{nearest_passage, regions};
 use crate::stencil::FARTHEST;
 use crate::traversable::Traversable;
 use crate::view_points::ViewPoints;
@@ -15,7 +14,7 @@ use crate::{
     BodyEvidence, CandidateRecord, Decision, PlannerError, PlannerParameters, Scope, Stencil,
     Strategy, TravelCosts, expected_information_gain, travel_costs,
 };
-use covmap::{Cell, Change, CoverageMap, Grid, Raster, step_between};
+use covmap::{Cell, Change, CoverageMap, Grid, Raster};
 use covmap_model::{SensorModel, cells_under_body, intercepted};
 use covmap_sonar::Scan;
 use nalgebra::Point2;
@@ -24,10 +23,6 @@ use rayon::prelude::*;
 /// The fast evaluation of E\[I\] is within this of the literal one, in units of the largest
 /// absolute gain that a decision evaluates; candidates closer to the best are decided by the latter.
 pub const GAIN_TOLERANCE: f64 = 1e-5;
-
-/// A passage is worth trying if beyond it the robot could stand on so many times the area of
-/// its body, about a square metre: pockets behind bumps are not.
-const ROOM: usize = 4;
 
 /// Chooses view-points by the strategies of section 4, and knows when all is explored.
 ///
@@ -50,7 +45,7 @@ pub struct Planner {
     pub(crate) traversable: Traversable,
     pub(crate) exploration: Exploration,
     pub(crate) beams: BeamCache,
-    measured: Measured,
+    pub(crate) measured: Measured,
     window: Option<Window>,
     /// The chosen view-point, and what was in sight of it when it was chosen.
     target: Option<(Cell, Vec<(usize, f32)>)>,
@@ -61,7 +56,7 @@ pub(crate) struct Candidates {
     pub(crate) indices: Vec<usize>,
     pub(crate) costs: TravelCosts,
     /// The cells that look blocked on the way to all of them.
-    passage: Vec<usize>,
+    pub(crate) passage: Vec<usize>,
 }
 
 impl Planner {
@@ -263,48 +258,6 @@ impl Planner {
         let mut indices = reached.indices(|group| self.beams.reasons(group));
         indices.retain(|i| trapped || !self.measured.is_spent(*i));
         Candidates { indices, costs, passage: Vec::new() }
-    }
-
-    /// What L(c) would be beyond the nearest passage that looks blocked but was not tried,
-    /// for a robot that can reach no candidate; `None` if there is no such passage.
-    ///
-    /// Cells at which the robot never bumped come first; then all, by steps at which it did not.
-    fn candidates_beyond_a_passage(&mut self, from: Cell) -> Option<Candidates> {
-        let longest = self.parameters.longest_passage(self.grid.resolution())?;
-        let steps = self.traversable.steps();
-        let here = travel_costs(steps.clone(), from);
-        let is_cut_off = |i: usize| self.traversable.at(i) && here.cost(i).is_none();
-        let mut wanted = ViewPoints::new(&self.grid);
-        (0..self.grid.len()).filter(|i| is_cut_off(*i)).for_each(|i| wanted.insert(i));
-        self.beams.refresh_sight(&mut self.cells, &wanted);
-        let is_candidate =
-            |i: usize| is_cut_off(i) && !self.measured.is_spent(i) && self.beams.has_reason(i);
-        let least = ROOM * self.traversable.body_cells();
-        let rooms = regions(&steps, least, is_cut_off, is_candidate);
-        let nearest = |only_untried: bool| {
-            nearest_passage(
-                &self.grid,
-                longest,
-                |i| here.cost(i).map(|d| d / self.grid.resolution()),
-                |i| {
-                    (!only_untried || self.traversable.is_untried(i))
-                        && !self.exploration.is_outside(i)
-                },
-                |i, step| !self.traversable.is_barred(i, step),
-                |i| rooms[i],
-            )
-        };
-        let passage = nearest(true).or_else(|| nearest(false))?;
-        let mut open = steps;
-        for ends in passage.windows(2) {
-            let step = step_between(self.grid.cell(ends[0]), self.grid.cell(ends[1]))?;
-            open.open(ends[0], step);
-        }
-        let costs = travel_costs(open, from);
-        let is_reached = |i: &usize| is_candidate(*i) && costs.cost(*i).is_some();
-        let indices = (0..self.grid.len()).filter(is_reached).collect();
-        let passage = passage[1..passage.len() - 1].to_vec();
-        Some(Candidates { indices, costs, passage })
     }
 
     /// The candidates with their costs; gains and scores are not filled in.

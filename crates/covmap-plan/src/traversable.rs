@@ -1,5 +1,6 @@
 //! Where the robot can stand, and go.
 
+use crate::Reach;
 use covmap::{Cell, Grid, STEPS, Steps, opposite, step_between};
 
 /// Which view-points the robot can stand on, and which steps lead from one to the next.
@@ -112,16 +113,16 @@ impl Traversable {
         self.barred[from] >> step & 1 == 1
     }
 
-    /// What keeps the robot from standing on the view-point with a row-major index, if anything.
-    pub(crate) fn obstacle(&self, index: usize) -> Option<Obstacle> {
+    /// What keeps the robot from a view-point that it does not reach.
+    pub(crate) fn obstacle(&self, index: usize) -> Reach {
         if self.at(index) {
-            None
+            Reach::CutOff
         } else if self.bumped[index] {
-            Some(Obstacle::Bump)
+            Reach::Bumped
         } else if self.blockers[index] > 0 {
-            Some(Obstacle::Covered)
+            Reach::Covered
         } else {
-            Some(Obstacle::Unknown)
+            Reach::Unknown
         }
     }
 
@@ -208,17 +209,6 @@ impl Traversable {
             not[index] &= !(1 << step);
         }
     }
-}
-
-/// What keeps the robot from a view-point.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Obstacle {
-    /// It bumped there.
-    Bump,
-    /// A known cell under its body would be covered.
-    Covered,
-    /// The cell is unknown.
-    Unknown,
 }
 
 /// How far a place is from the line of a step that begins at the origin [cells].

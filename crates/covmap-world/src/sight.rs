@@ -1,6 +1,7 @@
 //! What a robot can reach and see in truth: the yardstick of a run.
 
 use crate::drive::Drive;
+use crate::scenario::Surface;
 use crate::world::World;
 use covmap::{Cell, Grid, Raster, STEPS, Steps, neighbour};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -21,6 +22,8 @@ pub struct Seen {
     pub in_sight: Raster<bool>,
     /// The cells, at least half full, in which a line of sight ends.
     pub first_solid: Raster<bool>,
+    /// Those of them in which one ends at a smooth surface.
+    pub first_smooth: Raster<bool>,
 }
 
 impl World {
@@ -136,7 +139,8 @@ impl World {
         let eye =
             Eye { world: self, grid, coverage, range, fan: Fan::new(range, grid.resolution()) };
         let nothing = Raster::filled(*grid, false);
-        let nothing = Seen { in_sight: nothing.clone(), first_solid: nothing };
+        let nothing =
+            Seen { in_sight: nothing.clone(), first_solid: nothing.clone(), first_smooth: nothing };
         let part = |cells: &[Cell]| {
             let mut seen = nothing.clone();
             cells.iter().for_each(|&cell| eye.look(cell, &mut seen));
@@ -147,6 +151,7 @@ impl World {
         parts.iter().fold(nothing.clone(), |mut all, part| {
             add(&mut all.in_sight, &part.in_sight);
             add(&mut all.first_solid, &part.first_solid);
+            add(&mut all.first_smooth, &part.first_smooth);
             all
         })
     }
@@ -211,12 +216,14 @@ impl Eye<'_> {
             cells_along(self.grid, origin, direction, length, |i| seen.in_sight[i] = true);
             let Some(hit) = hit else { continue };
             let at = origin + direction * hit.distance;
-            let inward = -self.world.faces[hit.face].normal();
+            let face = &self.world.faces[hit.face];
+            let inward = -face.normal();
             for depth in [1e-6, 0.25 * self.grid.resolution()] {
                 let cell = self.grid.cell_at(at + inward * depth);
                 let solid = cell.and_then(|c| self.grid.index(c));
                 if let Some(i) = solid.filter(|&i| self.coverage[i] >= SOLID) {
                     seen.first_solid[i] = true;
+                    seen.first_smooth[i] |= face.surface == Surface::Smooth;
                     break;
                 }
             }

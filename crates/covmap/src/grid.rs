@@ -194,6 +194,19 @@ impl Grid {
         self.index(cell).map(|_| cell)
     }
 
+    /// The cells that meet the box between two corners \[m\], in row-major order.
+    pub fn cells_between(
+        &self,
+        low: Point2<f64>,
+        high: Point2<f64>,
+    ) -> impl Iterator<Item = Cell> + use<> {
+        let (low, high) = (self.unbounded_cell_at(low), self.unbounded_cell_at(high));
+        let last = |side: usize| i32::try_from(side).unwrap_or(i32::MAX) - 1;
+        let rows = low.y.max(0)..=high.y.min(last(self.height));
+        let columns = low.x.max(0)..=high.x.min(last(self.width));
+        rows.flat_map(move |y| columns.clone().map(move |x| Cell::new(x, y)))
+    }
+
     /// The cell that holds a point, whether it lies in the grid or not.
     #[inline]
     pub fn unbounded_cell_at(&self, point: Point2<f64>) -> Cell {

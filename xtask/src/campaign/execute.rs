@@ -5,8 +5,8 @@ use super::plan::{Job, Plan};
 use super::record::{RunRecord, Value, values};
 use anyhow::Result;
 use covmap_explore::{
-    Accuracy, Config, Ending, Event, Limits, Mission, SimulatedRobot, Summary, Tally, TraceHasher,
-    TraceHeader, Truth, explore,
+    Accuracy, Config, CutOff, Ending, Event, Limits, Mission, SimulatedRobot, Summary, Tally,
+    TraceHasher, TraceHeader, Truth, explore,
 };
 use covmap_plan::Strategy;
 use covmap_world::{Extent, Scenario, Surface, World};
@@ -91,7 +91,15 @@ fn measure(
     let accuracy = Accuracy::new(&truth, mission, &run.map, &scored);
     let strategy = &mission.config.planner.strategy;
     let hash = hasher.finish();
-    let summary = Summary::new(world.name(), strategy, seed, &run, &score, seconds, hash);
+    let summary = Summary::new(
+        world.name(),
+        strategy,
+        seed,
+        &run,
+        (&score, CutOff::new(&truth, mission, &run)),
+        seconds,
+        hash,
+    );
     let mut all = values(&summary)?;
     let extra = accuracy.named().into_iter().chain(tally.finish(&truth.observable).named());
     all.extend(extra.map(|(name, number)| (name.to_owned(), Value::Number(number))));

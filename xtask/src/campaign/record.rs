@@ -61,8 +61,9 @@ impl fmt::Display for Value {
     }
 }
 
-/// What the key says already, and the time.
-const NOT_VALUES: [&str; 4] = ["world", "strategy", "seed", "seconds"];
+/// What the key says already, the time, and what not every world has.
+const NOT_VALUES: [&str; 6] =
+    ["world", "strategy", "seed", "seconds", "wall_recall_rough", "wall_recall_smooth"];
 
 /// All numbers of a summary by their names; those of a group as `group.name`.
 pub(crate) fn values(summary: &Summary) -> Result<IndexMap<String, Value>> {

@@ -9,7 +9,7 @@ use crate::paper::runs::Runs;
 use crate::paper::session::Series;
 use crate::pictures::Pictures;
 use anyhow::{Result, bail};
-use covmap_explore::{Mission, Run, SimulatedRobot, Summary, Truth, explore};
+use covmap_explore::{CutOff, Mission, Run, SimulatedRobot, Summary, Truth, explore};
 use covmap_io::Picture;
 use covmap_plan::Strategy;
 use covmap_world::World;
@@ -74,7 +74,15 @@ impl Pictured<'_> {
         let Self { world, mission, run } = self;
         let truth = Truth::new(world, mission);
         let score = truth.score(&run.map, &truth.scored_cells(world, mission, run));
-        let summary = Summary::new(world.name(), &strategy, seed, run, &score, 0.0, String::new());
+        let summary = Summary::new(
+            world.name(),
+            &strategy,
+            seed,
+            run,
+            (&score, CutOff::new(&truth, mission, run)),
+            0.0,
+            String::new(),
+        );
         let pictures = Pictures { mission, run, truth: &truth, summary: &summary };
         if occupancy { pictures.occupancy() } else { Ok(pictures.coverage()) }
     }
