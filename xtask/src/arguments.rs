@@ -21,7 +21,7 @@ Exit codes:
   0    explored: no cell is open (explore); done (the others)
   2    bad input: an argument or a file, or a folder that cannot be written
   3    the budget of scans is spent (--max-scans)
-  4    the robot could not leave its start
+  4    the robot could not leave its start, was boxed in, or heard no echo at all
   130  interrupted with Ctrl-C; what there was is written all the same";
 
 const EXPLORE_EXAMPLES: &str = "\

@@ -92,7 +92,7 @@ pub enum Event {
     },
     /// The robot bumped into something.
     Bump {
-        /// The cell that it was entering; it is blocked for good.
+        /// The cell that it was entering; its own, if it did not get to its centre.
         cell: Cell,
         /// The last place without contact \[m\].
         at: Point2<f64>,
