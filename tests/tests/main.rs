@@ -3,6 +3,7 @@
 
 mod architecture;
 mod shipped_files;
+mod turned_buildings;
 
 use std::path::{Path, PathBuf};
 
