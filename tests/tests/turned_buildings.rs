@@ -26,6 +26,7 @@ fn explored(building: &str, angle: f64, shift: Vector2<f64>) -> (Ending, Score, 
 }
 
 #[track_caller]
+#[allow(clippy::print_stdout, reason = "the measured table, with --nocapture")]
 fn check(building: &str, angle: f64, shift: Vector2<f64>) {
     let (ending, score, cut_off) = explored(building, angle, shift);
     let degrees = angle.to_degrees();

@@ -33,8 +33,8 @@ impl Verdict {
 
     fn name(self) -> &'static str {
         match self {
-            Self::Wall => "wall, as it is",
-            Self::Free => "free, as it is",
+            Self::Wall => "wall, or partly",
+            Self::Free => "free, or partly",
             Self::MissedWall => "missed wall",
             Self::Phantom => "phantom: covered only in the map",
             Self::Unknown => "could be seen, not known",
@@ -131,15 +131,16 @@ impl Pictures<'_> {
         let is = |raster: &Raster<bool>| raster.get(cell) == Some(&true);
         let map = &self.run.map;
         let covered = map.is_known(cell) && map.mode(cell) >= HALF;
-        let solid = self.truth.coverage.get(cell).is_some_and(|c| *c >= HALF);
+        let coverage = self.truth.coverage.get(cell).copied().unwrap_or(1.0);
+        let is_free = coverage <= self.mission.config.planner.traversable_coverage;
         let matters = is(&self.truth.observable);
-        match (solid, covered) {
-            (false, true) if matters || is(&self.truth.reachable) => Verdict::Phantom,
+        match covered {
+            true if is_free && (matters || is(&self.truth.reachable)) => Verdict::Phantom,
             _ if !matters => Verdict::Hidden,
-            (true, false) if is(&self.truth.first_solid) => Verdict::MissedWall,
+            false if is(&self.truth.first_solid) => Verdict::MissedWall,
             _ if !map.is_known(cell) => Verdict::Unknown,
-            (true, _) => Verdict::Wall,
-            _ => Verdict::Free,
+            true => Verdict::Wall,
+            false => Verdict::Free,
         }
     }
 

@@ -154,7 +154,8 @@ impl Body {
         let margin = Vector2::repeat(self.radius + self.grid.resolution());
         let (low, high) = (from.inf(&to) - margin, from.sup(&to) + margin);
         for cell in self.grid.cells_between(low, high) {
-            let Some(index) = self.grid.index(cell) else { continue };
+            let index = self.grid.index(cell).filter(|i| self.passed[*i] != u64::MAX);
+            let Some(index) = index else { continue };
             let corner = self.grid.lower_corner(cell);
             let before = self.passed[index];
             for (i, j) in (0..PARTS).flat_map(|j| (0..PARTS).map(move |i| (i, j))) {
@@ -398,7 +399,7 @@ mod tests {
             assert!((found - expected).abs() < 1e-6, "{k}: {found} {expected}");
         }
         // The wall explains the contact.
-        assert!(map.mode(low) == 0.0 && map.mode(high) == 1.0);
+        assert!(map.mode(low) < 0.1 && map.mode(high) > 0.9);
     }
 
     #[test]
@@ -448,7 +449,7 @@ mod tests {
         for y in 5..15 {
             let (before, wall, behind) = (Cell::new(9, y), Cell::new(10, y), Cell::new(11, y));
             assert!(map.mode(wall) >= 0.5, "{y}: {:?}", map.histogram(wall));
-            assert!(map.mode(before) == 0.0 && map.mode(behind) == 0.0, "{y}");
+            assert!(map.mode(before) < 0.1 && map.mode(behind) < 0.1, "{y}");
         }
     }
 }
