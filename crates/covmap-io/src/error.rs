@@ -1,5 +1,6 @@
 //! What can be wrong with a file.
 
+use crate::escaped::{escaped, shown};
 use crate::map_server::MapServerError;
 use crate::pgm::PgmError;
 use std::io;
@@ -10,7 +11,7 @@ use std::path::{Path, PathBuf};
 #[non_exhaustive]
 pub enum FileError {
     /// The operating system refused.
-    #[error("{}: cannot be {action}: {reason}", path.display())]
+    #[error("{}: cannot be {action}: {reason}", shown(path))]
     Io {
         /// The file or folder.
         path: PathBuf,
@@ -20,7 +21,10 @@ pub enum FileError {
         reason: io::Error,
     },
     /// The file is larger than anything of its kind.
-    #[error("{}: has more than {limit} bytes, which is too large for a file of this kind", path.display())]
+    #[error(
+        "{}: has more than {limit} bytes, which is too large for a file of this kind",
+        shown(path)
+    )]
     TooLarge {
         /// The file.
         path: PathBuf,
@@ -28,7 +32,7 @@ pub enum FileError {
         limit: u64,
     },
     /// The file is not UTF-8.
-    #[error("{}: is not a text file: byte {at} is not UTF-8", path.display())]
+    #[error("{}: is not a text file: byte {at} is not UTF-8", shown(path))]
     NotText {
         /// The file.
         path: PathBuf,
@@ -36,7 +40,7 @@ pub enum FileError {
         at: usize,
     },
     /// Text that does not say what it should: RON, JSON, or YAML.
-    #[error("{}:{line}:{column}: {}{message}", path.display(), in_field(field))]
+    #[error("{}:{line}:{column}: {}{}", shown(path), in_field(field), escaped(message))]
     Syntax {
         /// The file.
         path: PathBuf,
@@ -51,7 +55,7 @@ pub enum FileError {
     },
     /// The last line of a file of JSON lines was cut short, as when its writer was stopped.
     /// All lines before it are whole.
-    #[error("{}:{line}: the last line is cut short", path.display())]
+    #[error("{}:{line}: the last line is cut short", shown(path))]
     Truncated {
         /// The file.
         path: PathBuf,
@@ -59,7 +63,7 @@ pub enum FileError {
         line: usize,
     },
     /// A line longer than any that is written.
-    #[error("{}:{line}: the line has more than {limit} bytes", path.display())]
+    #[error("{}:{line}: the line has more than {limit} bytes", shown(path))]
     LongLine {
         /// The file.
         path: PathBuf,
@@ -69,7 +73,7 @@ pub enum FileError {
         limit: u64,
     },
     /// A value that cannot be written in the format of the file.
-    #[error("{}: cannot be written: {message}", path.display())]
+    #[error("{}: cannot be written: {}", shown(path), escaped(message))]
     Unwritable {
         /// The file.
         path: PathBuf,
@@ -77,7 +81,7 @@ pub enum FileError {
         message: String,
     },
     /// The image of a map is not what its header says.
-    #[error("{}: {reason}", path.display())]
+    #[error("{}: {reason}", shown(path))]
     Pgm {
         /// The image.
         path: PathBuf,
@@ -85,15 +89,24 @@ pub enum FileError {
         reason: PgmError,
     },
     /// The description of a map_server map says something impossible.
-    #[error("{}: {reason}", path.display())]
+    #[error("{}: {}", shown(path), escaped(reason))]
     MapServer {
         /// The YAML file.
         path: PathBuf,
         /// What is wrong with it.
         reason: MapServerError,
     },
+    /// A file is there, which is not replaced without being told to.
+    #[error(
+        "{}: is there already and holds something else; name another file, or replace it with --force",
+        shown(path)
+    )]
+    Exists {
+        /// The file.
+        path: PathBuf,
+    },
     /// The output folder must not be replaced.
-    #[error("{}: {reason}", path.display())]
+    #[error("{}: {reason}", shown(path))]
     Folder {
         /// The folder.
         path: PathBuf,
@@ -103,7 +116,7 @@ pub enum FileError {
 }
 
 fn in_field(field: &str) -> String {
-    if field.is_empty() { String::new() } else { format!("{field}: ") }
+    if field.is_empty() { String::new() } else { format!("{}: ", escaped(&field)) }
 }
 
 impl FileError {
@@ -119,6 +132,7 @@ impl FileError {
             | Self::Unwritable { path, .. }
             | Self::Pgm { path, .. }
             | Self::MapServer { path, .. }
+            | Self::Exists { path }
             | Self::Folder { path, .. } => path,
         }
     }

@@ -2,7 +2,8 @@
 
 use crate::FileError;
 use crate::error::{field_name, one_line};
-use crate::read::{MAX_FILE, read_bytes, write_bytes};
+use crate::new_file::{Replace, write_file};
+use crate::read::{MAX_FILE, read_bytes};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
@@ -17,7 +18,7 @@ pub fn write_json<T: Serialize>(path: impl AsRef<Path>, value: &T) -> Result<(),
     let path = path.as_ref();
     let mut bytes = serde_json::to_vec_pretty(value).map_err(|error| unwritable(path, &error))?;
     bytes.push(b'\n');
-    write_bytes(path, &bytes)
+    write_file(path, &bytes, Replace::File)
 }
 
 /// The value that a JSON file holds.

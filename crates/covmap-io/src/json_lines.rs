@@ -2,15 +2,19 @@
 
 use crate::FileError;
 use crate::json::{parse_json, syntax, unwritable};
+use crate::new_file::create_new;
+use crate::read::open_input;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
-use std::fs::{File, OpenOptions};
+use std::fs::File;
 use std::io::{BufRead, BufReader, BufWriter, Read, Write};
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 /// The longest line that is read \[bytes\].
 const MAX_LINE: u64 = 64 << 20;
+/// The longest file that is read \[bytes\]: the trace of some 600,000 scans.
+const MAX_LINES: u64 = 1 << 30;
 
 /// Writes one value a line.
 ///
@@ -24,25 +28,23 @@ pub struct JsonLines<W: Write> {
 }
 
 impl JsonLines<BufWriter<File>> {
-    /// Lines in a new file; an old one is emptied.
+    /// Lines in a new file, which can be read up to the last line while it is written.
     ///
     /// # Errors
-    /// If the file cannot be made.
+    /// If anything has its name already, or the file cannot be made.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
-        let file = File::create(path).map_err(FileError::io(path, "written"))?;
+        let file = create_new(path).map_err(FileError::io(path, "written"))?;
         Ok(Self::new(path, BufWriter::new(file)))
     }
 
-    /// Lines after those that a file already has; the file is made if there is none.
+    /// Brings all that was written to the disk.
     ///
     /// # Errors
-    /// If the file cannot be opened.
-    pub fn append(path: impl AsRef<Path>) -> Result<Self, FileError> {
-        let path = path.as_ref();
-        let file = OpenOptions::new().create(true).append(true).open(path);
-        let file = file.map_err(FileError::io(path, "written"))?;
-        Ok(Self::new(path, BufWriter::new(file)))
+    /// If the file cannot be written.
+    pub fn sync(&mut self) -> Result<(), FileError> {
+        self.flush()?;
+        self.out.get_ref().sync_all().map_err(FileError::io(&self.path, "written"))
     }
 }
 
@@ -83,6 +85,8 @@ pub struct JsonLinesReader<T, R> {
     path: PathBuf,
     input: R,
     line: usize,
+    /// How much may still be read.
+    left: u64,
     bytes: Vec<u8>,
     ended: bool,
     values: PhantomData<fn() -> T>,
@@ -91,20 +95,30 @@ pub struct JsonLinesReader<T, R> {
 /// The values of a file of JSON lines.
 ///
 /// # Errors
-/// If the file cannot be opened. Reading on, each value has its own error.
+/// If the file cannot be opened, or has more than 1 GB. Reading on, each value has its own error.
 pub fn read_json_lines<T: DeserializeOwned>(
     path: impl AsRef<Path>,
 ) -> Result<JsonLinesReader<T, BufReader<File>>, FileError> {
     let path = path.as_ref();
-    let file = File::open(path).map_err(FileError::io(path, "read"))?;
+    let file = open_input(path)?;
+    if file.metadata().map_err(FileError::io(path, "read"))?.len() > MAX_LINES {
+        return Err(FileError::TooLarge { path: path.to_path_buf(), limit: MAX_LINES });
+    }
     Ok(JsonLinesReader::new(path, BufReader::new(file)))
 }
 
 impl<T: DeserializeOwned, R: BufRead> JsonLinesReader<T, R> {
     /// The values in `input`; `path` names it in errors.
     pub fn new(path: impl Into<PathBuf>, input: R) -> Self {
-        let values = PhantomData;
-        Self { path: path.into(), input, line: 0, bytes: Vec::new(), ended: false, values }
+        Self {
+            path: path.into(),
+            input,
+            line: 0,
+            left: MAX_LINES,
+            bytes: Vec::new(),
+            ended: false,
+            values: PhantomData,
+        }
     }
 
     /// Reads the next line without its end; `None` after the last. The flag says whether the
@@ -113,6 +127,9 @@ impl<T: DeserializeOwned, R: BufRead> JsonLinesReader<T, R> {
         self.bytes.clear();
         let mut input = self.input.by_ref().take(MAX_LINE + 1);
         input.read_until(b'\n', &mut self.bytes).map_err(FileError::io(&self.path, "read"))?;
+        let limit = MAX_LINES;
+        let too_large = || FileError::TooLarge { path: self.path.clone(), limit };
+        self.left = self.left.checked_sub(self.bytes.len() as u64).ok_or_else(too_large)?;
         if self.bytes.is_empty() {
             return Ok(None);
         }
@@ -194,11 +211,9 @@ mod tests {
         let path = folder.path().join("log.jsonl");
         let scans = some_scans();
         let mut lines = JsonLines::create(&path).unwrap();
-        lines.write(&scans[0]).unwrap();
-        lines.flush().unwrap();
-        let mut lines = JsonLines::append(&path).unwrap();
-        scans[1..].iter().for_each(|scan| lines.write(scan).unwrap());
-        drop(lines);
+        scans.iter().for_each(|scan| lines.write(scan).unwrap());
+        lines.sync().unwrap();
+        assert!(JsonLines::create(&path).is_err(), "a file that is there stays");
         let back: Result<Vec<Scan>, _> = read_json_lines(&path).unwrap().collect();
         assert_eq!(back.unwrap(), scans);
     }
@@ -239,6 +254,19 @@ mod tests {
         let mut reader = JsonLinesReader::<u32, _>::new("e.jsonl", endless);
         assert!(matches!(reader.next(), Some(Err(FileError::LongLine { line: 1, .. }))));
         assert!(reader.next().is_none());
+    }
+
+    #[test]
+    fn lines_without_end_are_refused() {
+        let mut reader = JsonLinesReader::<u32, _>::new("e.jsonl", b"\n1\n2\n3\n".as_slice());
+        reader.left = 5;
+        assert_eq!([reader.next().unwrap().unwrap(), reader.next().unwrap().unwrap()], [1, 2]);
+        assert!(matches!(reader.next(), Some(Err(FileError::TooLarge { .. }))));
+        assert!(reader.next().is_none());
+        let folder = tempfile::tempdir().unwrap();
+        let sparse = folder.path().join("sparse.jsonl");
+        File::create(&sparse).unwrap().set_len(MAX_LINES + 1).unwrap();
+        assert!(matches!(read_json_lines::<u32>(sparse), Err(FileError::TooLarge { .. })));
     }
 
     proptest! {

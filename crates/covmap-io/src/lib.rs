@@ -20,10 +20,12 @@
 //! ```
 mod chart;
 mod error;
+mod escaped;
 mod json;
 mod json_lines;
 pub mod log;
 mod map_server;
+mod new_file;
 mod output_folder;
 mod pgm;
 mod picture;
@@ -31,11 +33,14 @@ mod read;
 mod ron_file;
 pub use chart::{Chart, ChartAxis, ChartPoint, Figure, HeatMap, Panel, Series};
 pub use error::FileError;
+pub use escaped::{escaped, shown};
 pub use json::{read_json, write_json};
 pub use json_lines::{JsonLines, JsonLinesReader, read_json_lines};
 pub use map_server::{CoverageThresholds, MapCell, MapServerError, MapServerMap};
 pub use map_server::{load_map_server, save_map_server};
+pub use new_file::{NewFile, Replace, write_file};
 pub use output_folder::OutputFolder;
 pub use pgm::PgmError;
 pub use picture::{ColorMap, Key, Marker, Picture, Rgb, coverage_color};
+pub use read::{open_input, read_bytes, read_text};
 pub use ron_file::{parse_ron, read_ron, write_ron};

@@ -1,7 +1,7 @@
 //! A folder of results that is there whole or not at all.
 
 use crate::FileError;
-use crate::read::write_bytes;
+use crate::new_file::{Replace, write_file};
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io;
@@ -66,7 +66,7 @@ impl OutputFolder {
             fs::rename(&aside, &target).map_err(FileError::io(&target, "restored"))?;
         }
         fs::create_dir_all(&partial).map_err(FileError::io(&partial, "made"))?;
-        write_bytes(&partial.join(MARKER), MARKER_TEXT.as_bytes())?;
+        write_file(partial.join(MARKER), MARKER_TEXT.as_bytes(), Replace::File)?;
         let marker = lock(&partial)?;
         Ok(Self { target, partial, _marker: marker })
     }
@@ -169,7 +169,7 @@ mod tests {
     /// Writes a folder with one file in it.
     fn write(dir: &Path, text: &str) -> Result<PathBuf, FileError> {
         let folder = OutputFolder::create(dir)?;
-        write_bytes(&folder.path("a.txt"), text.as_bytes())?;
+        write_file(folder.path("a.txt"), text.as_bytes(), Replace::File)?;
         folder.finish()
     }
 
@@ -192,7 +192,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let dir = root.path().join("deep/out");
         let folder = OutputFolder::create(dir.join(".")).unwrap();
-        write_bytes(&folder.path("a.txt"), b"a").unwrap();
+        write_file(folder.path("a.txt"), b"a", Replace::File).unwrap();
         assert_eq!(names(dir.parent().unwrap()), ["out.partial"]);
         assert_eq!(folder.finish().unwrap(), dir);
         assert_eq!(names(dir.parent().unwrap()), ["out"]);
@@ -258,7 +258,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let dir = root.path().join("out");
         let folder = OutputFolder::create(&dir).unwrap();
-        write_bytes(&folder.path("a.txt"), b"a").unwrap();
+        write_file(folder.path("a.txt"), b"a", Replace::File).unwrap();
         drop(folder);
         assert_eq!(names(&beside(&dir, ".partial")), [".covmap", "a.txt"]);
         write(&dir, "new").unwrap();

@@ -1,20 +1,90 @@
-//! Reading whole files, but never more of them than is sensible.
+//! Opening and reading input files: at once or not at all, and never more than is sensible.
 
 use crate::FileError;
-use std::fs::File;
-use std::io::Read;
+use std::fs::{File, FileType, OpenOptions};
+use std::io::{self, Read};
 use std::path::Path;
 
 /// The largest file that is read as a whole \[bytes\].
 pub(crate) const MAX_FILE: u64 = 64 << 20;
 
+/// Opens a file to read it, whether it is a link to a file or the file itself.
+///
+/// Pipes, devices, sockets and folders are refused at once: to open or to read them may take for
+/// ever. What stands there is looked at before it is opened, since opening a device may do
+/// something, and after, since it may have been exchanged meanwhile.
+///
+/// # Errors
+/// If there is no such file, or it is none that can be read.
+pub fn open_input(path: impl AsRef<Path>) -> Result<File, FileError> {
+    let path = path.as_ref();
+    let open = || {
+        check(std::fs::metadata(path)?.file_type())?;
+        let file = at_once().read(true).open(path)?;
+        check(file.metadata()?.file_type())?;
+        Ok(file)
+    };
+    open().map_err(FileError::io(path, "read"))
+}
+
+fn check(kind: FileType) -> io::Result<()> {
+    if kind.is_file() {
+        return Ok(());
+    }
+    Err(io::Error::other(format!("it is {}, not a file", kind_of(kind))))
+}
+
+/// What something is that is no file.
+pub(crate) fn kind_of(kind: FileType) -> &'static str {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if kind.is_fifo() {
+            return "a pipe";
+        } else if kind.is_socket() {
+            return "a socket";
+        } else if kind.is_char_device() || kind.is_block_device() {
+            return "a device";
+        }
+    }
+    if kind.is_dir() {
+        "a folder"
+    } else if kind.is_symlink() {
+        "a symbolic link"
+    } else {
+        "something else"
+    }
+}
+
+/// Options that open, and read, without waiting for anybody.
+fn at_once() -> OpenOptions {
+    #[allow(unused_mut, reason = "changed where the flag is known")]
+    let mut options = OpenOptions::new();
+    /// O_NONBLOCK, for which the standard library has no name.
+    #[cfg(all(target_os = "linux", not(any(target_arch = "mips", target_arch = "sparc64"))))]
+    const NONBLOCK: i32 = 0o4000;
+    #[cfg(any(target_os = "macos", target_os = "freebsd"))]
+    const NONBLOCK: i32 = 4;
+    #[cfg(any(
+        all(target_os = "linux", not(any(target_arch = "mips", target_arch = "sparc64"))),
+        target_os = "macos",
+        target_os = "freebsd"
+    ))]
+    std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, NONBLOCK);
+    options
+}
+
 /// The bytes of a file of at most `limit` bytes.
 ///
-/// The size is looked at before anything is read; what lies about its size, such as a
-/// device, is cut off at the limit.
-pub(crate) fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
+/// The size is looked at before anything is read; what lies about its size, such as a file of
+/// `/proc`, is cut off at the limit.
+///
+/// # Errors
+/// If the file cannot be opened by [`open_input`] or read, or is larger.
+pub fn read_bytes(path: impl AsRef<Path>, limit: u64) -> Result<Vec<u8>, FileError> {
+    let path = path.as_ref();
     let too_large = || FileError::TooLarge { path: path.to_path_buf(), limit };
-    let file = File::open(path).map_err(FileError::io(path, "read"))?;
+    let file = open_input(path)?;
     let size = file.metadata().map_err(FileError::io(path, "read"))?.len();
     if size > limit {
         return Err(too_large());
@@ -28,14 +98,77 @@ pub(crate) fn read_bytes(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> 
 }
 
 /// The text of a file of at most `limit` bytes.
-pub(crate) fn read_text(path: &Path, limit: u64) -> Result<String, FileError> {
+///
+/// # Errors
+/// As [`read_bytes`], and if the file is not UTF-8.
+pub fn read_text(path: impl AsRef<Path>, limit: u64) -> Result<String, FileError> {
+    let path = path.as_ref();
     String::from_utf8(read_bytes(path, limit)?).map_err(|error| FileError::NotText {
         path: path.to_path_buf(),
         at: error.utf8_error().valid_up_to(),
     })
 }
 
-/// Writes a whole file.
-pub(crate) fn write_bytes(path: &Path, bytes: &[u8]) -> Result<(), FileError> {
-    std::fs::write(path, bytes).map_err(FileError::io(path, "written"))
+#[cfg(test)]
+#[cfg(unix)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+    use std::os::unix::net::UnixListener;
+
+    #[track_caller]
+    fn refuse(path: &Path, expected: &str) {
+        let error = open_input(path).unwrap_err().to_string();
+        assert_eq!(error, format!("{}: cannot be read: {expected}", path.display()));
+    }
+
+    #[test]
+    fn what_is_no_file_is_refused_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        let made = std::process::Command::new("mkfifo").arg(path("pipe")).status().unwrap();
+        assert!(made.success());
+        let _listener = UnixListener::bind(path("socket")).unwrap();
+        symlink(path("pipe"), path("link")).unwrap();
+        symlink(path("loop"), path("loop")).unwrap();
+        refuse(folder.path(), "it is a folder, not a file");
+        refuse(&path("pipe"), "it is a pipe, not a file");
+        refuse(&path("link"), "it is a pipe, not a file");
+        refuse(&path("socket"), "it is a socket, not a file");
+        refuse(Path::new("/dev/zero"), "it is a device, not a file");
+        assert!(open_input(path("none")).unwrap_err().to_string().contains("No such file"));
+        assert!(open_input(path("loop")).is_err());
+    }
+
+    #[test]
+    fn a_pipe_that_takes_the_place_of_a_file_meanwhile_is_not_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        // This would wait for a writer, for ever.
+        let opened = at_once().read(true).open(&pipe).unwrap();
+        assert!(check(opened.metadata().unwrap().file_type()).is_err());
+    }
+
+    #[test]
+    fn a_link_to_a_file_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("a"), "text").unwrap();
+        symlink("a", folder.path().join("b")).unwrap();
+        assert_eq!(read_text(folder.path().join("b"), 4).unwrap(), "text");
+    }
+
+    #[test]
+    fn the_limit_holds_for_the_size_and_while_reading() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("large");
+        File::create(&path).unwrap().set_len(1 << 40).unwrap();
+        assert!(matches!(read_bytes(&path, 9), Err(FileError::TooLarge { limit: 9, .. })));
+        // Its size is said to be 0.
+        let proc = Path::new("/proc/self/maps");
+        if proc.exists() {
+            assert!(matches!(read_bytes(proc, 9), Err(FileError::TooLarge { .. })));
+            assert!(!read_text(proc, MAX_FILE).unwrap().is_empty());
+        }
+    }
 }

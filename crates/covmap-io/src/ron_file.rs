@@ -2,7 +2,8 @@
 
 use crate::FileError;
 use crate::error::{field_name, one_line};
-use crate::read::{MAX_FILE, read_text, write_bytes};
+use crate::new_file::{Replace, write_file};
+use crate::read::{MAX_FILE, read_text};
 use ron::extensions::Extensions;
 use ron::ser::PrettyConfig;
 use serde::Serialize;
@@ -72,7 +73,7 @@ pub fn write_ron<T: Serialize>(
     }
     text.push_str(&body);
     text.push('\n');
-    write_bytes(path, text.as_bytes())
+    write_file(path, text.as_bytes(), Replace::File)
 }
 
 #[cfg(test)]

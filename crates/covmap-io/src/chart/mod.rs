@@ -216,7 +216,7 @@ impl Figure {
     /// If a file cannot be written.
     pub fn save(&self, svg: impl AsRef<Path>, png: impl AsRef<Path>) -> Result<(), FileError> {
         let scene = self.lay_out();
-        crate::read::write_bytes(svg.as_ref(), scene.to_svg().as_bytes())?;
+        crate::new_file::write_file(svg.as_ref(), scene.to_svg().as_bytes(), crate::Replace::File)?;
         scene.paint().save(png.as_ref())
     }
 }

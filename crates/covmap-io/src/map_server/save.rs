@@ -1,8 +1,8 @@
 //! A map of coverage as a map of ROS.
 
 use crate::FileError;
+use crate::new_file::{Replace, write_file};
 use crate::pgm::pgm_bytes;
-use crate::read::write_bytes;
 use covmap::Raster;
 use std::path::Path;
 
@@ -64,7 +64,7 @@ pub fn save_map_server(
     let greys: Vec<u8> = rows.flatten().map(|coverage| grey(*coverage, thresholds)).collect();
     let comment = format!("covmap, {} m/pixel", grid.resolution());
     let image = pgm_bytes(grid.width(), grid.height(), &comment, &greys);
-    write_bytes(&folder.join(format!("{stem}.pgm")), &image)?;
+    write_file(folder.join(format!("{stem}.pgm")), &image, Replace::File)?;
     let corner = grid.lower_left();
     let yaml = format!(
         "image: {stem}.pgm\nmode: trinary\nresolution: {:?}\norigin: [{:?}, {:?}, 0.0]\n\
@@ -73,7 +73,7 @@ pub fn save_map_server(
         corner.x,
         corner.y,
     );
-    write_bytes(&folder.join(format!("{stem}.yaml")), yaml.as_bytes())
+    write_file(folder.join(format!("{stem}.yaml")), yaml.as_bytes(), Replace::File)
 }
 
 fn grey(coverage: Option<f64>, thresholds: CoverageThresholds) -> u8 {

@@ -57,7 +57,7 @@ impl Canvas {
             path: path.to_path_buf(),
             message: error.to_string(),
         })?;
-        crate::read::write_bytes(path, &bytes)
+        crate::new_file::write_file(path, &bytes, crate::Replace::File)
     }
 
     /// Colours a rectangle of whole pixels, which must lie in the canvas.
