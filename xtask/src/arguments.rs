@@ -2,10 +2,12 @@
 
 mod bench;
 mod experiments;
+mod files;
 mod values;
 
 pub(crate) use bench::{Bench, Rows};
 pub(crate) use experiments::{Experiments, Figure, Paper, Table};
+pub(crate) use files::{Force, Log, Model, Truth};
 
 use crate::campaign::Shard;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -14,15 +16,16 @@ use covmap_plan::Strategy;
 use nalgebra::Isometry2;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use values::{every, every_degrees, named_file, range, resolution, start, while_driving};
+use values::{every, every_degrees, named_file, resolution, start, while_driving};
 
 const EXIT_CODES: &str = "\
 Exit codes:
   0    explored: no cell is open (explore); done (the others)
-  2    bad input: an argument or a file, or a folder that cannot be written
+  2    bad input: an argument or a file, or something that cannot be written
   3    the budget of scans is spent (--max-scans)
   4    the robot could not leave its start, was boxed in, or heard no echo at all
-  130  interrupted with Ctrl-C; what there was is written all the same";
+  130  interrupted with Ctrl-C; what there was is written all the same
+  141  nobody read on what was printed";
 
 const EXPLORE_EXAMPLES: &str = "\
 The folder that is written:
@@ -35,8 +38,8 @@ The folder that is written:
   truth.png                 the exact coverage of every cell
   occupancy.png             the log-odds occupancy grid of the same scans
   certificate.png           why there is nothing left to do, cell by cell
-It is DIR.partial while it is being written, with a valid trace at any time. A DIR that
-covmap wrote is replaced whole; any other is refused.
+It is DIR.partial while it is being written, with a valid trace at any time. The same run
+replaces its own DIR; that of another run is replaced with --force only, and any other never.
 
 Examples:
   cargo xtask explore scenarios/office.ron
@@ -83,30 +86,6 @@ Examples:
 
 Exit codes: 0 done; 2 bad input, or a folder that cannot be written; 130 interrupted with Ctrl-C,
 with the map of what was read.
-";
-
-const LOG_EXAMPLES: &str = "\
-Each scan of the trace becomes a line ODOM and a line SONAR of the same time; no echo is the
-longest range, a missing reading 0. Read back, the log gives the same scans.
-
-Example:
-  cargo xtask log out/lab-IG_CL-0.3-1 --out lab.log
-";
-
-const TRUTH_EXAMPLES: &str = "\
-Columns: x, y (the centre of the cell, in metres), coverage (in [0, 1], exact). Row by row from
-the lower left, on the grid that `explore` uses, with its margin around the world.
-
-Example:
-  cargo xtask truth scenarios/office.ron --resolution 0.05 --out truth.csv
-";
-
-const MODEL_EXAMPLES: &str = "\
-Columns: cell_distance (from the sensor, in metres), coverage (of each bin), probability (that
-the cell has it, Eq. 9). From r/2 to the last cell that an echo updates, in steps of r/10.
-
-Example:
-  cargo xtask model --range 1.0 --out model.csv
 ";
 
 const SURVEY_EXAMPLES: &str = "\
@@ -219,13 +198,13 @@ pub(crate) enum Command {
     #[command(after_help = MAP_EXAMPLES)]
     Map(Map),
     /// Writes the scans of a run as a log of CARMEN.
-    #[command(after_help = LOG_EXAMPLES)]
+    #[command(after_help = files::LOG_EXAMPLES)]
     Log(Log),
     /// Writes the exact coverage of every cell of a world.
-    #[command(after_help = TRUTH_EXAMPLES)]
+    #[command(after_help = files::TRUTH_EXAMPLES)]
     Truth(Truth),
     /// Writes what the sensor model makes of one echo: the numbers of Fig. 3.
-    #[command(after_help = MODEL_EXAMPLES)]
+    #[command(after_help = files::MODEL_EXAMPLES)]
     Model(Model),
     /// Fits the sensor model to the truth by local search, and writes a configuration.
     #[command(after_help = FIT_EXAMPLES)]
@@ -290,9 +269,12 @@ pub(crate) struct Explore {
     /// the fastest of this machine]
     #[arg(long, value_name = "KIND")]
     pub(crate) registers: Option<WidestRegisters>,
-    /// Where the results go [default: out/WORLD-STRATEGY-SEED]
+    /// Where the results go [default: out/WORLD-STRATEGY-SEED, and
+    /// what else was typed, as in out/lab-IG-1-r0.2]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -324,6 +306,8 @@ pub(crate) struct Explain {
     /// The number of the decision, counted from 0 as in the trace
     #[arg(long, value_name = "N")]
     pub(crate) step: usize,
+    #[command(flatten)]
+    pub(crate) force: Force,
 }
 
 /// Which sensors of a log are read.
@@ -358,46 +342,15 @@ pub(crate) struct Map {
     /// ... or turned by so many degrees
     #[arg(long, value_name = "DEG", value_parser = every_degrees, default_value = "5")]
     pub(crate) every_degrees: f64,
-    /// Where the results go [default: out/LOG-SENSOR]
+    /// Where the results go [default: out/LOG-SENSOR, and what else was
+    /// typed, as in out/test1-laser-r0.05]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Log {
-    /// The folder that `explore` wrote (or the DIR.partial that it is writing)
-    pub(crate) dir: PathBuf,
-    /// The log that is written
-    #[arg(long, value_name = "FILE.log")]
-    pub(crate) out: PathBuf,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Truth {
-    /// A scenario (.ron), or a map of ROS map_server (.yaml with its .pgm)
-    pub(crate) world: PathBuf,
-    /// Side of a cell in metres
-    #[arg(long, value_name = "M", value_parser = resolution, default_value = "0.1")]
-    pub(crate) resolution: f64,
-    /// The table that is written
-    #[arg(long, value_name = "FILE.csv")]
-    pub(crate) out: PathBuf,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Model {
-    /// Robot, sonar, sensor model and planner [default: configs/b21r.ron, built in]
-    #[arg(long, value_name = "FILE")]
-    pub(crate) config: Option<PathBuf>,
-    /// The range d of the echo in metres, up to the usable range of the model
-    #[arg(long, value_name = "M", value_parser = range)]
-    pub(crate) range: f64,
-    /// The table that is written
-    #[arg(long, value_name = "FILE.csv")]
-    pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -408,6 +361,8 @@ pub(crate) struct Fit {
     /// Where the results go
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -423,6 +378,8 @@ pub(crate) struct Survey {
     /// The file that is written; the picture has its name with .png
     #[arg(long, value_name = "FILE.ron")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
@@ -453,6 +410,8 @@ pub(crate) struct Readings {
     /// Where the results go
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,

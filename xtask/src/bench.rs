@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: &Bench) -> Result<ExitCode> {
     let progress = Progress::new(false);
     let bench = Measuring { config: &config, extent, progress: &progress };
     if let Some(folder) = &arguments.growth {
-        growth::run(&bench, arguments.quick, folder)?;
+        growth::run(&bench, arguments.quick, (folder, arguments.force))?;
         progress.finish();
         return Ok(ExitCode::SUCCESS);
     }
@@ -109,6 +109,6 @@ pub(crate) fn run(arguments: &Bench) -> Result<ExitCode> {
         decisions::office(&bench, &mut table)?;
     }
     progress.finish();
-    say::line(table);
+    table.to_string().lines().for_each(say::line);
     Ok(ExitCode::SUCCESS)
 }

@@ -17,6 +17,7 @@ mod version;
 
 pub(crate) use collect::run as collect;
 pub(crate) use command::run as command;
+pub(crate) use digest::Digest;
 pub(crate) use file::{Campaign, NamedWorld, Seeds, Setting, Starts};
 pub(crate) use folder::load_paths;
 pub(crate) use paths::{Paths, driven};

@@ -4,7 +4,7 @@ use crate::arguments::Fit;
 use crate::fit_file::{FitFile, Source, examples};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
-use crate::{csv_file, interrupt, say};
+use crate::{csv_file, interrupt, output, say};
 use anyhow::{Result, bail};
 use covmap_explore::Config;
 use covmap_fit::{
@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     if file.held_out.is_empty() {
         bail!("{}: held_out: a comparison needs at least one entry", arguments.file.display());
     }
-    let folder = OutputFolder::create(arguments.out.clone())?;
+    let folder = output::of_fit("compare", arguments, (&config, &name))?;
     let mut progress = Progress::new(arguments.quiet);
     let examples = |sources: &[Source]| {
         examples(sources, &arguments.file, (&config, &name), (&progress, &interrupt))

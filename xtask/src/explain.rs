@@ -1,20 +1,23 @@
 //! `explain`: why a decision was taken.
 
 use crate::arguments::Explain;
+use crate::input::about;
 use crate::replay::{Moment, replay};
-use crate::trace_file::Trace;
+use crate::trace_file::{self, Trace};
 use crate::{explain_picture, say};
 use anyhow::Result;
+use covmap_io::write_file;
 use covmap_plan::{CandidateRecord, Strategy};
 use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Explain) -> Result<ExitCode> {
-    let Explain { dir, step } = arguments;
-    let path = dir.join("trace.jsonl");
+    let Explain { dir, step, force } = arguments;
+    let path = trace_file::in_folder(dir)?;
     let trace = Trace::read(&path, *step)?;
     let moment = replay(&trace, &path)?;
     let picture = dir.join(format!("explain-{step}.png"));
-    explain_picture::draw(&moment, &trace.header.world, *step).save(&picture)?;
+    let png = explain_picture::draw(&moment, &trace.header.world, *step).to_png();
+    write_file(&picture, &png.map_err(about(&picture))?, force.replace())?;
     let strategy = &moment.mission.config.planner.strategy;
     say::line(format!("{}, {strategy}: decision {step}", trace.header.world));
     facts(&moment).iter().for_each(|fact| say::line(format!("  {fact}")));

@@ -1,15 +1,15 @@
 //! `explore`: a world is explored to its end.
 
 use crate::arguments::Explore;
+use crate::campaign::Digest;
 use crate::interrupt::{self, Interrupt};
 use crate::progress::Progress;
 use crate::trace_file::TraceWriter;
-use crate::{input, results, say};
+use crate::{input, output, results, say};
 use anyhow::Result;
 use covmap_explore::{
     Config, CutOff, Ending, Limits, Mission, Run, SimulatedRobot, Summary, TraceHeader, explore,
 };
-use covmap_io::OutputFolder;
 use covmap_world::World;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,10 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
         widest.limit();
     }
     let task = task(arguments)?;
-    let folder = OutputFolder::create(folder_name(arguments, &task))?;
+    let inputs = [Some(&arguments.world), arguments.config.as_ref()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    let run = run_line(arguments, &task)?;
+    let folder = output::folder(&folder_name(arguments, &task)?, &run, arguments.force, &inputs)?;
     let mut progress = Progress::new(arguments.quiet);
     let mut trace = TraceWriter::create(&folder.path("trace.jsonl"))?;
     let begun = Instant::now();
@@ -70,10 +73,43 @@ fn overridden(mut config: Config, arguments: &Explore) -> Config {
     config
 }
 
-fn folder_name(arguments: &Explore, task: &Task) -> PathBuf {
-    let strategy = task.mission.config.planner.strategy.file_name();
-    let name = format!("{}-{strategy}-{}", task.world.name(), task.seed);
-    arguments.out.clone().unwrap_or_else(|| Path::new("out").join(name))
+/// The folder that was typed, or one whose name tells all that differs from the default.
+fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
+    let Explore { config, resolution, while_driving, max_scans, start, out, .. } = arguments;
+    if let Some(out) = out {
+        return Ok(out.clone());
+    }
+    let (default, _) = input::config(None)?;
+    let (named, _) = input::config(config.as_deref())?;
+    let other = config.as_deref().filter(|_| named != default);
+    let finer = resolution.filter(|resolution| *resolution != named.resolution);
+    let start = start.map(|start| {
+        let (place, heading) = (start.translation.vector, start.rotation.angle().to_degrees());
+        let [x, y, degrees] = [place.x, place.y, heading].map(output::typed);
+        format!("at{x}_{y}_{degrees}")
+    });
+    Ok(output::named([
+        Some(task.world.name().to_owned()),
+        Some(task.mission.config.planner.strategy.file_name()),
+        Some(task.seed.to_string()),
+        other.map(output::stem),
+        finer.map(|resolution| format!("r{resolution}")),
+        start,
+        while_driving.map(|every| format!("every{every}")),
+        max_scans.map(|most| format!("max{most}")),
+    ]))
+}
+
+/// Which run it is: what the trace begins with, and the world.
+fn run_line(arguments: &Explore, task: &Task) -> Result<String> {
+    let Task { world, mission, seed } = task;
+    let strategy = &mission.config.planner.strategy;
+    let words = format!("explore {}, {strategy}, seed {seed}", world.name());
+    let header = TraceHeader::new(mission, world.name(), *seed);
+    let digest = Digest::default()
+        .with(serde_json::to_vec(&header)?)
+        .with(output::world_bytes(&arguments.world)?);
+    Ok(output::run_line(&words, digest))
 }
 
 /// Explores, with all that hangs on it.

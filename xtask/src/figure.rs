@@ -31,7 +31,7 @@ pub(crate) fn draw(
 ) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
     let session = Session::new(arguments, worlds, &interrupt);
-    let output = Output::create(session.out())?;
+    let output = Output::create(session.out(), arguments.force.replace())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(session.jobs().get()).build()?;
     let done = pool.install(|| what(&session, &output));
     if interrupt.is_pressed() {

@@ -5,7 +5,7 @@ use crate::fit_charts;
 use crate::fit_file::{FitFile, Source, examples};
 use crate::interrupt::{self, Interrupt};
 use crate::progress::Progress;
-use crate::{input, say};
+use crate::{input, output, say};
 use anyhow::{Result, anyhow};
 use covmap_explore::{Config, Spread};
 use covmap_fit::{
@@ -55,7 +55,7 @@ struct Paired {
 pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
     let (file, config, name) = FitFile::read(&arguments.file)?;
-    let folder = OutputFolder::create(arguments.out.clone())?;
+    let folder = output::of_fit("fit", arguments, (&config, &name))?;
     let mut progress = Progress::new(arguments.quiet);
     let examples = |sources: &[Source]| {
         examples(sources, &arguments.file, (&config, &name), (&progress, &interrupt))

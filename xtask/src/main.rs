@@ -24,6 +24,7 @@ mod map;
 mod map_pictures;
 mod mapper;
 mod model;
+mod output;
 mod paper;
 mod pictures;
 mod progress;
@@ -37,15 +38,23 @@ mod trace_file;
 mod trail;
 mod truth;
 
+use anyhow::anyhow;
 use arguments::{Arguments, Command};
 use clap::Parser;
+use std::io::ErrorKind;
 use std::process::ExitCode;
 
 /// What the program ends with after bad input; clap ends with the same.
 const BAD_INPUT: u8 = 2;
+/// What a shell says of a program that was ended by a closed pipe.
+const CLOSED_PIPE: u8 = 141;
 
 fn main() -> ExitCode {
-    let done = match Arguments::parse().command {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(told) => return ended(say::clap(&told)),
+    };
+    let done = match arguments.command {
         Command::Explore(arguments) => explore::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Map(arguments) => map::run(&arguments),
@@ -63,8 +72,21 @@ fn main() -> ExitCode {
         Command::Campaign(arguments) => campaign::command(&arguments),
         Command::Collect(arguments) => campaign::collect(&arguments),
     };
-    done.unwrap_or_else(|error| {
+    ended(done.unwrap_or_else(|error| {
         say::error(&error);
         ExitCode::from(BAD_INPUT)
-    })
+    }))
+}
+
+/// How the program ends, unless what it said could not be written.
+fn ended(code: ExitCode) -> ExitCode {
+    match say::finish() {
+        Ok(()) => code,
+        // Whoever closed the pipe does not want to read on, and knows.
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => ExitCode::from(CLOSED_PIPE),
+        Err(error) => {
+            say::error(&anyhow!("the standard output cannot be written: {error}"));
+            ExitCode::from(BAD_INPUT)
+        }
+    }
 }

@@ -6,7 +6,7 @@ use crate::interrupt::{self, Interrupt};
 use crate::map_pictures::MapPictures;
 use crate::mapper::{Log, Mapper, Stride, Survey};
 use crate::progress::Progress;
-use crate::{input, results, say};
+use crate::{input, output, results, say};
 use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_explore::Config;
@@ -70,7 +70,10 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     let body =
         (config.planner.body_evidence == BodyEvidence::Belief).then_some(config.robot.radius);
     let stride = Stride { every: arguments.every, turn: arguments.every_degrees.to_radians() };
-    let folder = OutputFolder::create(folder_name(arguments))?;
+    let run = run_line(arguments, &config)?;
+    let inputs = [Some(&arguments.log), arguments.poses.as_ref(), arguments.config.as_ref()];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    let folder = output::folder(&folder_name(arguments)?, &run, arguments.force, &inputs)?;
     let mapper = Mapper::new(grid, model, stride, body)?;
     let mapper = log.map(&survey, mapper, &mut progress, &interrupt)?;
     progress.say("drawing the map …");
@@ -85,13 +88,18 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     Ok(if mapper.stopped { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
 }
 
-fn config(arguments: &Map) -> Result<Config> {
+/// The configuration as its file has it.
+fn named_config(arguments: &Map) -> Result<(Config, PathBuf)> {
     let file = arguments.config.as_deref();
-    let (mut config, name) = match arguments.sensor {
-        SensorName::Laser => input::laser_config(file)?,
-        SensorName::Sonar if arguments.log.is_dir() => input::folder_config(file)?,
-        SensorName::Sonar => input::config(file)?,
-    };
+    match arguments.sensor {
+        SensorName::Laser => input::laser_config(file),
+        SensorName::Sonar if arguments.log.is_dir() => input::folder_config(file),
+        SensorName::Sonar => input::config(file),
+    }
+}
+
+fn config(arguments: &Map) -> Result<Config> {
+    let (mut config, name) = named_config(arguments)?;
     if let Some(resolution) = arguments.resolution {
         config.resolution = resolution;
     }
@@ -158,9 +166,36 @@ fn log_name(log: &Path) -> String {
     if short.is_empty() { "log".to_owned() } else { short.to_owned() }
 }
 
-fn folder_name(arguments: &Map) -> PathBuf {
-    let name = format!("{}-{}", log_name(&arguments.log), sensor_name(arguments.sensor));
-    arguments.out.clone().unwrap_or_else(|| Path::new("out").join(name))
+/// The folder that was typed, or one whose name tells all that differs from the default.
+fn folder_name(arguments: &Map) -> Result<PathBuf> {
+    let Map { config, poses, resolution, every, every_degrees, out, .. } = arguments;
+    if let Some(out) = out {
+        return Ok(out.clone());
+    }
+    let (named, _) = named_config(arguments)?;
+    let unlike = |value: f64, usual: f64| (value != usual).then_some(value);
+    let finer = resolution.and_then(|resolution| unlike(resolution, named.resolution));
+    Ok(output::named([
+        Some(log_name(&arguments.log)),
+        Some(sensor_name(arguments.sensor).to_owned()),
+        config.as_deref().map(output::stem),
+        poses.as_deref().map(output::stem),
+        finer.map(|resolution| format!("r{resolution}")),
+        unlike(*every, 0.05).map(|every| format!("every{every}")),
+        unlike(*every_degrees, 5.0).map(|degrees| format!("turn{degrees}")),
+    ]))
+}
+
+/// Which map it is: of what, and how.
+fn run_line(arguments: &Map, config: &Config) -> Result<String> {
+    let words = format!("map {}, {}", log_name(&arguments.log), sensor_name(arguments.sensor));
+    let mut digest = output::log_digest(&arguments.log)?
+        .with(serde_json::to_vec(config)?)
+        .with_numbers(&[arguments.every, arguments.every_degrees]);
+    if let Some(poses) = &arguments.poses {
+        digest = digest.with_file(poses)?;
+    }
+    Ok(output::run_line(&words, digest))
 }
 
 fn summary(arguments: &Map, survey: &Survey, mapper: &Mapper, seconds: f64) -> MapSummary {

@@ -1,10 +1,11 @@
 //! `model`: what the sensor model makes of one echo, Fig. 3.
 
 use crate::arguments::Model;
-use crate::{csv_file, input, say};
+use crate::{input, output, say};
 use anyhow::{Result, bail};
+use covmap_io::write_file;
 use covmap_model::{Outcome, SensorModel};
-use std::io::Write;
+use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -16,29 +17,29 @@ pub(crate) fn run(arguments: &Model) -> Result<ExitCode> {
     if range > usable {
         bail!("--range {range}: {} has a usable range of {usable} m", name.display());
     }
-    let distances = write_table(&arguments.out, &model, range)?;
+    let inputs: Vec<&Path> = arguments.config.as_deref().into_iter().collect();
+    let replace = output::replace(&arguments.out, arguments.force, &inputs)?;
+    let (table, distances) = table(&model, range);
+    write_file(&arguments.out, table.as_bytes(), replace)?;
     let bins = model.parameters().bins;
     say::line(format!("{}: {distances} distances, {bins} bins", arguments.out.display()));
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes what the model makes of an echo, and returns for how many distances.
-pub(crate) fn write_table(out: &Path, model: &SensorModel, range: f64) -> Result<usize> {
+/// What the model makes of an echo, and for how many distances.
+pub(crate) fn table(model: &SensorModel, range: f64) -> (String, usize) {
     let distances = cell_distances(model, range);
     let bins = model.parameters().bins;
-    csv_file::write(out, |table| {
-        writeln!(table, "cell_distance,coverage,probability")?;
-        let mut column = vec![0.0; bins];
-        for distance in &distances {
-            model.evidence(*distance, Outcome::Echo(range), &mut column);
-            for (bin, probability) in column.iter().enumerate() {
-                let coverage = covmap::bin_coverage(bin, bins);
-                writeln!(table, "{distance:?},{coverage:?},{probability:?}")?;
-            }
+    let mut table = "cell_distance,coverage,probability\n".to_owned();
+    let mut column = vec![0.0; bins];
+    for distance in &distances {
+        model.evidence(*distance, Outcome::Echo(range), &mut column);
+        for (bin, probability) in column.iter().enumerate() {
+            let coverage = covmap::bin_coverage(bin, bins);
+            let _ = writeln!(table, "{distance:?},{coverage:?},{probability:?}");
         }
-        Ok(())
-    })?;
-    Ok(distances.len())
+    }
+    (table, distances.len())
 }
 
 /// From r/2 to .20 m behind the end cell, as in Fig. 3, in steps of r/10 \[m\]; farther if

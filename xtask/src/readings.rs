@@ -9,18 +9,19 @@ use crate::interrupt::{self, Interrupt};
 use crate::mapper::Stride;
 use crate::progress::Progress;
 use crate::recorded::frames;
-use crate::{csv_file, say};
+use crate::{csv_file, output, say};
 use anyhow::{Result, bail};
 use covmap_explore::Config;
 use covmap_fit::{SearchSettings, maximise};
 use covmap_io::log::Sensor;
-use covmap_io::{OutputFolder, read_ron, write_ron};
+use covmap_io::{read_ron, write_ron};
 use covmap_sonar::{Range, Scan, SonarRing};
 use covmap_world::survey::Survey;
 use covmap_world::{Surface, World, stream};
 use knobs::KNOBS;
 use nalgebra::{Isometry2, Point2, Translation2};
 use std::io::Write;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use table::Table;
 
@@ -58,7 +59,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let (config, name) = input::folder_config(arguments.config.as_deref())?;
     input::check(&config, &name)?;
     let recording = Recording::read(arguments, &config)?;
-    let folder = OutputFolder::create(arguments.out.clone())?;
+    let inputs = [
+        Some(&arguments.log),
+        Some(&arguments.truth),
+        arguments.poses.as_ref(),
+        arguments.config.as_ref(),
+    ];
+    let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
+    let run = run_line(arguments, &config)?;
+    let folder = output::folder(&arguments.out, &run, arguments.force, &inputs)?;
     let real = recording.real();
     let mut rows = vec![("real", real.clone()), ("simulated", recording.simulated(&config)?)];
     if arguments.fit > 0 {
@@ -89,6 +98,20 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         say::line(format!("  {}", written.display()));
     }
     Ok(if interrupt.is_pressed() { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
+}
+
+/// Which comparison it is: of what, and how.
+fn run_line(arguments: &Arguments, config: &Config) -> Result<String> {
+    let Arguments { log, truth, poses, fit, every, every_degrees, .. } = arguments;
+    let mut digest = output::log_digest(log)?
+        .with_file(truth)?
+        .with(serde_json::to_vec(config)?)
+        .with(fit.to_string())
+        .with_numbers(&[*every, *every_degrees]);
+    if let Some(poses) = poses {
+        digest = digest.with_file(poses)?;
+    }
+    Ok(output::run_line(&format!("readings {}", output::stem(log)), digest))
 }
 
 fn tell(rows: &[(&str, Table)]) {

@@ -1,17 +1,18 @@
 //! What a run leaves behind.
 
 use crate::explore::Task;
-use crate::input::about;
 use crate::pictures::Pictures;
 use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_explore::{CutOff, Run, Summary, Truth};
-use covmap_io::{CoverageThresholds, OutputFolder, save_map_server, write_json};
+use covmap_io::{
+    CoverageThresholds, OutputFolder, Replace, save_map_server, write_file, write_json,
+};
 
 /// Writes a map: the whole posterior, and what is most likely for map_server.
 pub(crate) fn write_map(folder: &OutputFolder, map: &CoverageMap) -> Result<()> {
     let belief = folder.path("belief.bin");
-    std::fs::write(&belief, map.to_bytes()).map_err(about(&belief))?;
+    write_file(belief, &map.to_bytes(), Replace::Any)?;
     let likely = map.maximum_likelihood();
     save_map_server(folder.partial(), "map", &likely, CoverageThresholds::default())?;
     Ok(())

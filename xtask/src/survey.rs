@@ -3,15 +3,15 @@
 use crate::arguments::Survey as Arguments;
 use crate::input::about;
 use crate::recorded::{Frames, frames};
-use crate::say;
+use crate::{output, say};
 use anyhow::{Result, bail};
 use covmap::{Grid, Raster};
 use covmap_io::log::Sensor;
-use covmap_io::{Marker, Picture, Rgb, coverage_color, write_ron};
+use covmap_io::{Marker, Picture, Rgb, coverage_color, to_ron, write_file};
 use covmap_sonar::{Range, SonarRing};
 use covmap_world::survey::{Evidence, Survey, SurveyParameters, survey};
 use nalgebra::Point2;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// The side of a picture's cell \[m\], and the most of them along one side.
@@ -19,7 +19,12 @@ const PICTURE_CELL: f64 = 0.05;
 const PICTURE_CELLS: f64 = 1200.0;
 
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
-    let Arguments { log, poses, out, quiet } = arguments;
+    let Arguments { log, poses, out, force, quiet } = arguments;
+    let image = picture_of(out)?;
+    let inputs: Vec<&Path> =
+        [Some(log), poses.as_ref()].into_iter().flatten().map(PathBuf::as_path).collect();
+    let replace = output::replace(out, *force, &inputs)?;
+    output::replace(&image, *force, &inputs)?;
     let found_in = frames(log, poses.as_deref(), Sensor::Laser, SonarRing::b21r())?;
     let parameters = SurveyParameters::indoor();
     let scans = || found_in.scans.iter().map(|(ring, scan)| (&**ring, scan));
@@ -37,13 +42,13 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         survey.posts.len(),
         found.views
     );
-    write_ron(out, &survey, Some(&comment))?;
+    write_file(out, to_ron(out, &survey, Some(&comment))?.as_bytes(), replace)?;
     let size = high - low;
     let cell = PICTURE_CELL.max(size.max() / PICTURE_CELLS);
     let grid = Grid::covering(low, size, cell, 4).map_err(about(log))?;
     let evidence = survey.evidence(&grid, scans(), &parameters)?;
-    let image = out.with_extension("png");
-    picture(&grid, &survey, &found_in, &evidence, &parameters, log)?.save(&image)?;
+    let png = picture(&grid, &survey, &found_in, &evidence, &parameters, log)?.to_png();
+    write_file(&image, &png.map_err(about(&image))?, replace)?;
     if !quiet {
         say::line(format!("{} walls, {} posts", survey.walls.len(), survey.posts.len()));
         if !found_in.skipped.is_empty() {
@@ -52,6 +57,18 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         say::line(format!("  {}, {}", out.display(), image.display()));
     }
     Ok(ExitCode::SUCCESS)
+}
+
+/// The file of the picture beside a survey.
+fn picture_of(out: &Path) -> Result<PathBuf> {
+    let extension = out.extension().unwrap_or_default();
+    if extension.eq_ignore_ascii_case("png") {
+        bail!(
+            "{}: --out names the survey, a .ron; its picture has the same name with .png",
+            out.display()
+        );
+    }
+    Ok(out.with_extension("png"))
 }
 
 /// What is to be reviewed: the survey over what the laser saw.

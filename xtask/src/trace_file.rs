@@ -4,11 +4,41 @@ use crate::input::about;
 use anyhow::{Result, anyhow};
 use covmap::CoverageMap;
 use covmap_explore::{Event, TRACE_VERSION, TraceHasher, TraceHeader};
-use covmap_io::{FileError, JsonLines, read_json_lines};
+use covmap_io::{FileError, JsonLines, read_json, read_json_lines};
 use serde::Deserialize;
 use std::fs::File;
 use std::io::BufWriter;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// The trace in a folder that `explore` wrote.
+///
+/// # Errors
+/// If there is none; what the folder holds instead is said.
+pub(crate) fn in_folder(dir: &Path) -> Result<PathBuf> {
+    /// What only the summary of a map says.
+    #[derive(Deserialize)]
+    struct Summary {
+        sensor: Option<String>,
+    }
+    let is_map = || {
+        let summary = read_json::<Summary>(dir.join("summary.json"));
+        summary.is_ok_and(|summary| summary.sensor.is_some())
+    };
+    let trace = dir.join("trace.jsonl");
+    if trace.exists() || !dir.exists() {
+        return Ok(trace);
+    }
+    Err(about(dir)(match () {
+        () if !dir.is_dir() => "is no folder; name the folder that `explore` wrote",
+        () if is_map() => {
+            "`map` wrote it: a map has no decisions, and its scans are in the log that it was made of"
+        }
+        () if dir.join("campaign.json").exists() => {
+            "`campaign` wrote it: it keeps no traces; repeat a run with `explore`"
+        }
+        () => "holds no trace.jsonl; name a folder that `explore` wrote",
+    }))
+}
 
 /// Writes a trace line by line, and hashes it.
 #[derive(Debug)]
@@ -40,7 +70,7 @@ impl TraceWriter {
 
     /// The hash of all lines and of the belief that they led to.
     pub(crate) fn finish(mut self, belief: &CoverageMap) -> Result<String, FileError> {
-        self.lines.flush()?;
+        self.lines.sync()?;
         self.hasher.add_bytes(&belief.to_bytes());
         Ok(self.hasher.finish())
     }

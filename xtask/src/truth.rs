@@ -2,19 +2,20 @@
 
 use crate::arguments::Truth;
 use crate::input::about;
-use crate::{csv_file, input, say};
+use crate::{csv_file, input, output, say};
 use anyhow::Result;
 use covmap_world::Surface;
 use std::io::Write;
 use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Truth) -> Result<ExitCode> {
-    let Truth { world: file, resolution, out } = arguments;
+    let Truth { world: file, resolution, out, force } = arguments;
+    let replace = output::replace(out, *force, &[file])?;
     // Coverage does not depend on how a surface answers.
     let world = input::world(file, Surface::Rough)?;
     let grid = world.grid(*resolution).map_err(about(file))?;
     let coverage = world.coverage(&grid);
-    csv_file::write(out, |table| {
+    csv_file::write_to(out, replace, |table| {
         writeln!(table, "x,y,coverage")?;
         for (cell, coverage) in coverage.iter() {
             let center = grid.center(cell);

@@ -105,6 +105,27 @@ pub enum FileError {
         /// The file.
         path: PathBuf,
     },
+    /// The results of another run are in the folder.
+    #[error(
+        "{}: holds {}; name another folder with --out, or replace it with --force",
+        shown(path),
+        other_run(run)
+    )]
+    OtherRun {
+        /// The folder.
+        path: PathBuf,
+        /// The run that it holds; empty for one of an earlier covmap.
+        run: String,
+    },
+    /// A file in an output folder is not as covmap wrote it, so that the folder is not replaced.
+    #[error(
+        "{}: is not as covmap wrote it; move it away, or replace all of the folder with --force",
+        shown(path)
+    )]
+    NotOurs {
+        /// The file.
+        path: PathBuf,
+    },
     /// The output folder must not be replaced.
     #[error("{}: {reason}", shown(path))]
     Folder {
@@ -117,6 +138,13 @@ pub enum FileError {
 
 fn in_field(field: &str) -> String {
     if field.is_empty() { String::new() } else { format!("{}: ", escaped(&field)) }
+}
+
+fn other_run(run: &str) -> String {
+    match run {
+        "" => "a run of an earlier covmap".to_owned(),
+        _ => format!("another run ({})", escaped(run)),
+    }
 }
 
 impl FileError {
@@ -133,6 +161,8 @@ impl FileError {
             | Self::Pgm { path, .. }
             | Self::MapServer { path, .. }
             | Self::Exists { path }
+            | Self::OtherRun { path, .. }
+            | Self::NotOurs { path }
             | Self::Folder { path, .. } => path,
         }
     }

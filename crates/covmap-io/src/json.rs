@@ -18,7 +18,7 @@ pub fn write_json<T: Serialize>(path: impl AsRef<Path>, value: &T) -> Result<(),
     let path = path.as_ref();
     let mut bytes = serde_json::to_vec_pretty(value).map_err(|error| unwritable(path, &error))?;
     bytes.push(b'\n');
-    write_file(path, &bytes, Replace::File)
+    write_file(path, &bytes, Replace::Any)
 }
 
 /// The value that a JSON file holds.

@@ -9,9 +9,9 @@
 //! Metres and radians in the world; pixels for what is drawn; coverage in \[0, 1\].
 //!
 //! ```no_run
-//! use covmap_io::{OutputFolder, Picture, Rgb, load_map_server};
+//! use covmap_io::{OutputFolder, Picture, Replace, Rgb, load_map_server};
 //! let building = load_map_server("maps/building.yaml")?;
-//! let results = OutputFolder::create("out/building")?;
+//! let results = OutputFolder::create("out/building", "building.yaml", Replace::Same)?;
 //! Picture::new(building.grid)
 //!     .cells(&building.solid(), |solid| if *solid { Rgb::INK } else { Rgb::WHITE })
 //!     .save(results.path("truth.png"))?;
@@ -23,6 +23,7 @@ mod error;
 mod escaped;
 mod json;
 mod json_lines;
+mod ledger;
 pub mod log;
 mod map_server;
 mod new_file;
@@ -31,6 +32,7 @@ mod pgm;
 mod picture;
 mod read;
 mod ron_file;
+mod shared_folder;
 pub use chart::{Chart, ChartAxis, ChartPoint, Figure, HeatMap, Panel, Series};
 pub use error::FileError;
 pub use escaped::{escaped, shown};
@@ -42,5 +44,6 @@ pub use new_file::{NewFile, Replace, write_file};
 pub use output_folder::OutputFolder;
 pub use pgm::PgmError;
 pub use picture::{ColorMap, Key, Marker, Picture, Rgb, coverage_color};
-pub use read::{open_input, read_bytes, read_text};
-pub use ron_file::{parse_ron, read_ron, write_ron};
+pub use read::{MAX_FILE, open_input, read_bytes, read_text};
+pub use ron_file::{parse_ron, read_ron, to_ron, write_ron};
+pub use shared_folder::SharedFolder;

@@ -7,19 +7,19 @@ use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// What becomes of a file that is there already.
+/// What may be replaced. Links, devices and what covmap did not write into its folders never are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Replace {
-    /// It stays. Unless it holds the very same bytes, that is an error.
-    Never,
-    /// It is replaced, in one step. Only files are: a link, a folder, or a device stays.
-    File,
+    /// A file by the very same bytes; a folder by the same run.
+    Same,
+    /// Any file; any folder that covmap wrote.
+    Any,
 }
 
 impl Replace {
-    /// `File` if that was asked for.
+    /// `Any` if that was asked for.
     pub fn if_forced(force: bool) -> Self {
-        if force { Self::File } else { Self::Never }
+        if force { Self::Any } else { Self::Same }
     }
 }
 
@@ -62,7 +62,7 @@ impl NewFile {
         self.out.flush().map_err(written())?;
         self.out.get_ref().sync_all().map_err(written())?;
         if let Some(old) = present(&path)? {
-            if self.replace == Replace::Never {
+            if self.replace == Replace::Same {
                 let same = same(&path, &self.partial).map_err(FileError::io(&path, "read"))?;
                 return if same { Ok(()) } else { Err(FileError::Exists { path }) };
             }
@@ -190,12 +190,12 @@ mod tests {
     fn a_file_has_its_name_only_when_it_is_whole() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.csv");
-        let mut file = NewFile::create(&path, Replace::Never).unwrap();
+        let mut file = NewFile::create(&path, Replace::Same).unwrap();
         file.write_all(b"x,y\n").unwrap();
         assert_eq!(names(folder.path()), ["a.csv.partial"]);
         file.finish().unwrap();
         assert_eq!(names(folder.path()), ["a.csv"]);
-        let mut file = NewFile::create(&path, Replace::File).unwrap();
+        let mut file = NewFile::create(&path, Replace::Any).unwrap();
         file.write_all(b"cut").unwrap();
         drop(file);
         assert_eq!(names(folder.path()), ["a.csv"]);
@@ -207,10 +207,10 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("truth.ron");
         fs::write(&path, "corrected by hand").unwrap();
-        refuse(&path, Replace::Never, "truth.ron: is there already and holds something else");
+        refuse(&path, Replace::Same, "truth.ron: is there already and holds something else");
         assert_eq!(fs::read(&path).unwrap(), b"corrected by hand");
-        write_file(&path, b"corrected by hand", Replace::Never).unwrap();
-        write_file(&path, b"new", Replace::File).unwrap();
+        write_file(&path, b"corrected by hand", Replace::Same).unwrap();
+        write_file(&path, b"new", Replace::Any).unwrap();
         assert_eq!(fs::read(&path).unwrap(), b"new");
         assert_eq!(names(folder.path()), ["truth.ron"]);
     }
@@ -220,7 +220,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let mine = folder.path().join("a.csv.partial");
         fs::write(&mine, "mine").unwrap();
-        write_file(folder.path().join("a.csv"), b"new", Replace::Never).unwrap();
+        write_file(folder.path().join("a.csv"), b"new", Replace::Same).unwrap();
         assert_eq!(names(folder.path()), ["a.csv", "a.csv.partial"]);
         assert_eq!(fs::read(mine).unwrap(), b"mine");
     }
@@ -229,9 +229,9 @@ mod tests {
     fn what_is_no_file_is_not_replaced() {
         let folder = tempfile::tempdir().unwrap();
         fs::create_dir(folder.path().join("folder")).unwrap();
-        refuse(&folder.path().join("folder"), Replace::File, "it is a folder");
+        refuse(&folder.path().join("folder"), Replace::Any, "it is a folder");
         for name in ["none/a.csv", "folder/.."] {
-            let error = write_file(folder.path().join(name), b"", Replace::File).unwrap_err();
+            let error = write_file(folder.path().join(name), b"", Replace::Any).unwrap_err();
             assert!(error.to_string().contains(&format!("{name}: cannot be written")), "{error}");
         }
     }
@@ -246,10 +246,10 @@ mod tests {
         for (link, to) in [("link", "mine"), ("nowhere", "none"), ("a.partial", "mine")] {
             symlink(to, path(link)).unwrap();
         }
-        refuse(&path("link"), Replace::File, "it is a symbolic link");
-        refuse(&path("nowhere"), Replace::File, "it is a symbolic link");
+        refuse(&path("link"), Replace::Any, "it is a symbolic link");
+        refuse(&path("nowhere"), Replace::Any, "it is a symbolic link");
         fs::hard_link(path("mine"), path("a")).unwrap();
-        write_file(path("a"), b"new", Replace::File).unwrap();
+        write_file(path("a"), b"new", Replace::Any).unwrap();
         assert_eq!(fs::read(path("mine")).unwrap(), b"mine");
         assert_eq!(fs::read(path("a")).unwrap(), b"new");
         assert_eq!(names(folder.path()), ["a", "a.partial", "link", "mine", "nowhere"]);
@@ -264,9 +264,9 @@ mod tests {
         let allow = |mode| fs::set_permissions(&path, fs::Permissions::from_mode(mode)).unwrap();
         fs::write(&path, "old").unwrap();
         allow(0o444);
-        refuse(&path, Replace::File, "must not be written");
+        refuse(&path, Replace::Any, "must not be written");
         allow(0o600);
-        write_file(&path, b"new", Replace::File).unwrap();
+        write_file(&path, b"new", Replace::Any).unwrap();
         assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o600);
     }
 }

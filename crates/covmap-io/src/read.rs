@@ -6,7 +6,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 /// The largest file that is read as a whole \[bytes\].
-pub(crate) const MAX_FILE: u64 = 64 << 20;
+pub const MAX_FILE: u64 = 64 << 20;
 
 /// Opens a file to read it, whether it is a link to a file or the file itself.
 ///

@@ -2,6 +2,7 @@
 
 use crate::FileError;
 use crate::error::{field_name, one_line};
+use crate::escaped;
 use crate::new_file::{Replace, write_file};
 use crate::read::{MAX_FILE, read_text};
 use ron::extensions::Extensions;
@@ -49,16 +50,15 @@ pub fn parse_ron<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, File
     Ok(value)
 }
 
-/// Writes a value as RON, a field a line, below a comment of one or more lines.
+/// A value as RON, a field a line, below a comment of one or more lines; `path` names it in errors.
 ///
 /// # Errors
-/// If the value has no form in RON, or the file cannot be written.
-pub fn write_ron<T: Serialize>(
-    path: impl AsRef<Path>,
+/// If the value has no form in RON.
+pub fn to_ron<T: Serialize>(
+    path: &Path,
     value: &T,
     comment: Option<&str>,
-) -> Result<(), FileError> {
-    let path = path.as_ref();
+) -> Result<String, FileError> {
     let body = ron::Options::default()
         .with_recursion_limit(MAX_DEPTH)
         .to_string_pretty(value, PrettyConfig::default())
@@ -68,12 +68,25 @@ pub fn write_ron<T: Serialize>(
         })?;
     let mut text = String::new();
     for line in comment.unwrap_or_default().lines() {
-        text.push_str(format!("// {line}").trim_end());
+        text.push_str(format!("// {}", escaped(line)).trim_end());
         text.push('\n');
     }
     text.push_str(&body);
     text.push('\n');
-    write_file(path, text.as_bytes(), Replace::File)
+    Ok(text)
+}
+
+/// Writes a value as [`to_ron`] shows it. An old file is replaced.
+///
+/// # Errors
+/// If the value has no form in RON, or the file cannot be written.
+pub fn write_ron<T: Serialize>(
+    path: impl AsRef<Path>,
+    value: &T,
+    comment: Option<&str>,
+) -> Result<(), FileError> {
+    let path = path.as_ref();
+    write_file(path, to_ron(path, value, comment)?.as_bytes(), Replace::Any)
 }
 
 #[cfg(test)]

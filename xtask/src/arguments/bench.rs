@@ -1,5 +1,6 @@
 //! What `bench` can be told.
 
+use super::files::Force;
 use crate::bench::Point;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -16,6 +17,8 @@ pub(crate) struct Bench {
     /// this folder
     #[arg(long, value_name = "DIR", conflicts_with = "only")]
     pub(crate) growth: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// One point of --growth, by a process of its own
     #[arg(long, hide = true, value_name = "SIDE:BINS:RANGE")]
     pub(crate) point: Option<Point>,

@@ -1,5 +1,6 @@
 //! What can be typed for the paper's experiments.
 
+use super::files::Force;
 use super::values::named_file;
 use clap::Args;
 use std::num::NonZeroUsize;
@@ -75,6 +76,8 @@ pub(crate) struct Experiments {
     /// Where results go, and from where runs that are done are taken
     #[arg(long, value_name = "DIR", default_value = "out/paper")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,

@@ -7,12 +7,13 @@ use super::clock::{Clock, median};
 use super::decisions::{decide, for_ever, places};
 use super::situation::Situation;
 use super::tiles;
-use crate::{csv_file, input, say};
+use crate::arguments::Force;
+use crate::figures::Output;
+use crate::say;
 use anyhow::{Context, Result};
 use covmap_explore::{Config, Limits, Mission};
 use covmap_io::{Chart, ChartAxis, ChartPoint, Figure, Panel, Series};
 use std::fmt::{self, Display, Formatter};
-use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 use std::str::FromStr;
@@ -76,8 +77,12 @@ struct Measured {
 }
 
 /// Measures all points and writes `growth.csv`, `growth.svg` and `growth.png`.
-pub(super) fn run(bench: &Measuring<'_>, quick: bool, folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(input::about(folder))?;
+pub(super) fn run(
+    bench: &Measuring<'_>,
+    quick: bool,
+    (folder, force): (&Path, Force),
+) -> Result<()> {
+    let output = Output::create(folder, force.replace())?;
     let base = Point { side: 200, bins: 11, range: 3.0 };
     let (sides, bins, ranges): (&[u32], &[usize], &[f64]) = if quick {
         (&[100, 150], &[5, 11], &[2.0, 3.0])
@@ -89,7 +94,7 @@ pub(super) fn run(bench: &Measuring<'_>, quick: bool, folder: &Path) -> Result<(
     let sides = measure(bench, sides.iter().map(|side| Point { side: *side, ..base }))?;
     let bins = measure(bench, bins.iter().map(|bins| Point { bins: *bins, ..base }))?;
     let ranges = measure(bench, ranges.iter().map(|range| Point { range: *range, ..base }))?;
-    write_table(&folder.join("growth.csv"), &[&sides[..], &bins, &ranges].concat())?;
+    write_table(&output, &[&sides[..], &bins, &ranges].concat())?;
     let panels = [
         row(&sides, &ChartAxis::logarithmic("cells of the map"), |p| f64::from(p.side).powi(2)),
         #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
@@ -105,8 +110,7 @@ pub(super) fn run(bench: &Measuring<'_>, quick: bool, folder: &Path) -> Result<(
         panels: panels.into_iter().flatten().collect(),
         columns: 2,
     };
-    figure.save(folder.join("growth.svg"), folder.join("growth.png"))?;
-    Ok(())
+    output.figure("growth", &figure)
 }
 
 /// Measures points of growing size, each in a process of its own; ends before one that would
@@ -185,18 +189,26 @@ fn resident() -> f64 {
     kibibytes.map_or(f64::NAN, |k| 1024.0 * k)
 }
 
-fn write_table(path: &Path, points: &[Measured]) -> Result<()> {
-    csv_file::write(path, |out| {
-        writeln!(
-            out,
-            "side,bins,range_m,candidates,cold_s,next_s,map_bytes,map_and_planner_bytes"
-        )?;
-        points.iter().try_for_each(|m| {
-            let Point { side, bins, range } = m.point;
-            let Measured { candidates, cold, next, map, all, .. } = m;
-            writeln!(out, "{side},{bins},{range},{candidates},{cold:.6},{next:.6},{map},{all}")
-        })
-    })
+fn write_table(output: &Output, points: &[Measured]) -> Result<()> {
+    let columns = [
+        "side",
+        "bins",
+        "range_m",
+        "candidates",
+        "cold_s",
+        "next_s",
+        "map_bytes",
+        "map_and_planner_bytes",
+    ];
+    let row = |m: &Measured| {
+        let Point { side, bins, range } = m.point;
+        let Measured { candidates, cold, next, map, all, .. } = m;
+        let times = [cold, next].map(|seconds| format!("{seconds:.6}"));
+        let numbers =
+            [side.to_string(), bins.to_string(), range.to_string(), candidates.to_string()];
+        numbers.into_iter().chain(times).chain([map.to_string(), all.to_string()]).collect()
+    };
+    output.table("growth", &columns, &points.iter().map(row).collect::<Vec<_>>())
 }
 
 /// Time and memory along one axis.

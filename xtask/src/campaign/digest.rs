@@ -1,7 +1,12 @@
 //! Hashes of all that a run is a function of.
 
+use crate::input::about;
+use anyhow::Result;
+use covmap_io::open_input;
 use sha2::{Digest as _, Sha256};
 use std::fmt::Write;
+use std::io::{BufRead, BufReader};
+use std::path::Path;
 
 /// A hash over parts; where one ends and the next begins is a part of it.
 #[derive(Debug, Clone, Default)]
@@ -22,6 +27,21 @@ impl Digest {
     pub(crate) fn with_numbers(self, numbers: &[f64]) -> Self {
         let bytes: Vec<u8> = numbers.iter().flat_map(|number| number.to_le_bytes()).collect();
         self.with(bytes)
+    }
+
+    /// Adds the bytes of a file.
+    pub(crate) fn with_file(mut self, file: impl AsRef<Path>) -> Result<Self> {
+        let file = file.as_ref();
+        let mut bytes = BufReader::new(open_input(file)?);
+        loop {
+            let part = bytes.fill_buf().map_err(about(file))?;
+            if part.is_empty() {
+                return Ok(self.with("end of file"));
+            }
+            let length = part.len();
+            self.0.update(part);
+            bytes.consume(length);
+        }
     }
 
     /// The hash, as 32 hexadecimal digits.

@@ -9,18 +9,22 @@ use super::record::{RunKey, RunRecord, Value};
 use super::tables;
 use crate::input::about;
 use anyhow::{Result, anyhow, bail};
-use covmap_io::{read_json, write_json};
+use covmap_io::{Replace, open_input, read_bytes, read_json, write_file, write_json};
 use indexmap::IndexMap;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File, TryLockError};
-use std::io::{BufRead, BufReader, Write};
+use std::io::{BufRead, BufReader, Read, Take};
 use std::path::{Path, PathBuf};
 
 const FORMAT: u32 = 1;
 const LIST: &str = "campaign.json";
 const RUNS: &str = "runs";
 const LOCK: &str = "lock";
+/// The digits of the name of a run.
+const ID_DIGITS: usize = 32;
+/// The longest file of a run, with its paths, that is read \[bytes\].
+const LONGEST_RECORD: u64 = 64 << 20;
 
 /// A run that is to be done.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -115,11 +119,15 @@ impl Folder {
     pub(crate) fn open(dir: &Path, manifest: &Manifest) -> Result<Self> {
         Self::check(dir, manifest)?;
         let runs = dir.join(RUNS);
-        fs::create_dir_all(&runs).map_err(|error| cannot(&runs, "made", &error))?;
+        if fs::symlink_metadata(&runs).is_ok_and(|runs| runs.is_symlink()) {
+            bail!("{}: is a symbolic link, into which no run is written", runs.display());
+        }
+        fs::create_dir_all(dir).map_err(|error| cannot(dir, "made", &error))?;
         let lock = lock(dir)?;
+        fs::create_dir_all(&runs).map_err(|error| cannot(&runs, "made", &error))?;
         for entry in fs::read_dir(&runs).map_err(|error| cannot(&runs, "read", &error))?.flatten() {
-            if entry.path().extension().is_some_and(|extension| extension == "partial") {
-                // What was in flight when a process was killed.
+            if is_in_flight(&entry.file_name().to_string_lossy()) {
+                // Of a link that is called so the link alone is removed.
                 let _ = fs::remove_file(entry.path());
             }
         }
@@ -127,9 +135,7 @@ impl Folder {
         if Manifest::read(dir)?.as_ref() != Some(manifest) {
             tables::remove(dir)?;
             let list = dir.join(LIST);
-            let partial = list.with_extension("partial");
-            write_json(&partial, manifest)?;
-            fs::rename(&partial, &list).map_err(|error| cannot(&list, "written", &error))?;
+            write_json(&list, manifest)?;
         }
         Ok(folder)
     }
@@ -177,19 +183,7 @@ impl Folder {
         let text: String =
             lines.iter().map(|line| format!("{} {line}\n", checksum(line))).collect();
         let file = file(&self.dir, id);
-        let partial = file.with_extension("partial");
-        let written = (|| {
-            let mut out = File::create(&partial)?;
-            out.write_all(text.as_bytes())?;
-            out.sync_all()?;
-            fs::rename(&partial, &file)?;
-            // The name is on the disk as well, where the system can do that.
-            File::open(self.dir.join(RUNS)).and_then(|runs| runs.sync_all()).or(Ok(()))
-        })();
-        written.map_err(|error: std::io::Error| {
-            let _ = fs::remove_file(&partial);
-            cannot(&file, "written", &error)
-        })
+        replace(&file, text.as_bytes())
     }
 }
 
@@ -215,13 +209,11 @@ impl Recorded {
 /// What is recorded of a run; whether its paths are whole is looked at only if they are wanted.
 pub(crate) fn read(dir: &Path, planned: &Planned, with_paths: bool) -> Recorded {
     let file = file(dir, &planned.id);
-    let opened = match File::open(&file) {
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Recorded::Missing,
-        Err(_) => return Recorded::Damaged(file),
-        Ok(opened) => opened,
-    };
+    if fs::symlink_metadata(&file).is_err() {
+        return Recorded::Missing;
+    }
     let record = (|| {
-        let mut lines = Lines(BufReader::new(opened));
+        let mut lines = Lines::open(&file)?;
         let outcome: Outcome = lines.next()?;
         let times = lines.next()?;
         if with_paths {
@@ -257,12 +249,14 @@ pub(crate) fn load_paths(dir: &Path, key: &RunKey) -> Result<Paths> {
     paths.ok_or_else(damaged)?.ok_or_else(none)
 }
 
-/// The lines of a file, each checked.
-struct Lines(BufReader<File>);
+/// The lines of a file of at most [`LONGEST_RECORD`] bytes, each checked.
+struct Lines(BufReader<Take<File>>);
 
 impl Lines {
     fn open(file: &Path) -> Option<Self> {
-        Some(Self(BufReader::new(File::open(file).ok()?)))
+        let file = open_input(file).ok()?;
+        let length = file.metadata().ok()?.len();
+        (length <= LONGEST_RECORD).then(|| Self(BufReader::new(file.take(LONGEST_RECORD))))
     }
 
     fn next<T: serde::de::DeserializeOwned>(&mut self) -> Option<T> {
@@ -289,9 +283,25 @@ fn file(dir: &Path, id: &str) -> PathBuf {
 /// Copies the file of a run from one folder into another.
 pub(crate) fn copy(from: &Path, to: &Folder, id: &str) -> Result<()> {
     let (from, to) = (file(from, id), file(&to.dir, id));
-    let partial = to.with_extension("partial");
-    let copied = fs::copy(&from, &partial).and_then(|_| fs::rename(&partial, &to));
-    copied.map_err(|error| cannot(&to, "written", &error))
+    replace(&to, &read_bytes(from, LONGEST_RECORD)?)
+}
+
+/// Writes the file of a run, in the place of one that is damaged. A link in its place is removed
+/// itself; what it leads to stays.
+fn replace(file: &Path, bytes: &[u8]) -> Result<()> {
+    if fs::symlink_metadata(file).is_ok_and(|there| there.is_symlink()) {
+        fs::remove_file(file).map_err(|error| cannot(file, "removed", &error))?;
+    }
+    Ok(write_file(file, bytes, Replace::Any)?)
+}
+
+/// Whether a name is that of a run that was in flight when a process was killed, as this version
+/// or an earlier one wrote it.
+fn is_in_flight(name: &str) -> bool {
+    let Some((id, _)) = name.split_once(".run.partial").or(name.split_once(".partial")) else {
+        return false;
+    };
+    id.len() == ID_DIGITS && id.bytes().all(|digit| digit.is_ascii_hexdigit())
 }
 
 /// Whether something is there that no campaign wrote.
@@ -301,7 +311,7 @@ fn is_foreign(dir: &Path) -> Result<bool> {
         Err(error) => Err(about(dir)(format!("cannot be read: {error}"))),
         // A process that was killed early left no more than these.
         Ok(entries) => {
-            let ours = [RUNS, LOCK, "campaign.partial"];
+            let ours = [RUNS, LOCK, "campaign.partial", "campaign.json.partial"];
             Ok(entries.flatten().any(|e| !ours.iter().any(|name| e.file_name() == *name)))
         }
     }
@@ -309,7 +319,16 @@ fn is_foreign(dir: &Path) -> Result<bool> {
 
 fn lock(dir: &Path) -> Result<File> {
     let path = dir.join(LOCK);
-    let lock = File::create(&path).map_err(|error| cannot(&path, "written", &error))?;
+    let lock = match File::create_new(&path) {
+        Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
+            // It is locked and nothing is written into it, but a link may lead to anything.
+            if !fs::symlink_metadata(&path).is_ok_and(|lock| lock.is_file()) {
+                bail!("{}: is no lock that covmap made; remove it", path.display());
+            }
+            open_input(&path)?
+        }
+        lock => lock.map_err(|error| cannot(&path, "written", &error))?,
+    };
     match lock.try_lock() {
         Err(TryLockError::WouldBlock) => {
             bail!("{}: another covmap is writing into this folder", dir.display())

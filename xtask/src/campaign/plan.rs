@@ -9,7 +9,7 @@ use crate::input::{self, about};
 use anyhow::{Result, anyhow, bail};
 use covmap::Raster;
 use covmap_explore::{Config, Limits, Mission};
-use covmap_io::{load_map_server, read_ron};
+use covmap_io::{MAX_FILE, load_map_server, read_bytes, read_ron};
 use covmap_plan::Strategy;
 use covmap_world::{Scenario, World};
 use nalgebra::Isometry2;
@@ -252,7 +252,7 @@ impl Source {
         if !moves.iter().all(|v| v.is_finite()) || shift.0 < 0.0 || shift.1 < 0.0 {
             bail!("worlds: {}: turn and shift must be finite, the shift not negative", world.name);
         }
-        let bytes = |path: &Path| std::fs::read(path).map_err(about(path));
+        let bytes = |path: &Path| read_bytes(path, MAX_FILE);
         if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {
             let scenario: Scenario = read_ron(file)?;
             let digest = Digest::default().with(bytes(file)?).with_numbers(&moves);

@@ -13,7 +13,7 @@ pub(crate) const RANGE: f64 = 1.0;
 /// Draws the figure for one or more models, each with its name.
 pub(crate) fn write(output: &Output, models: &[(&str, &SensorModel)]) -> Result<()> {
     for (name, model) in models {
-        model::write_table(&output.path(&format!("figure3-{name}.csv")), model, RANGE)?;
+        output.write(&format!("figure3-{name}.csv"), model::table(model, RANGE).0)?;
     }
     let panels: Vec<HeatMap> = models.iter().map(|(name, model)| panel(name, model)).collect();
     // One scale for all, up to the largest value.

@@ -2,7 +2,7 @@
 
 use super::output::Output;
 use crate::campaign::{NamedWorld, Paths};
-use crate::input::{self, about};
+use crate::input;
 use anyhow::Result;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -69,11 +69,8 @@ pub(crate) fn world(named: &NamedWorld) -> Result<World> {
 
 /// Writes a picture as `NAME.png`, and as a drawing that holds it, `NAME.svg`.
 pub(crate) fn write_picture(output: &Output, name: &str, picture: &Picture) -> Result<()> {
-    let png = output.path(&format!("{name}.png"));
-    picture.save(&png)?;
-    let bytes = std::fs::read(&png).map_err(about(&png))?;
-    let svg = output.path(&format!("{name}.svg"));
-    std::fs::write(&svg, holding(&bytes)).map_err(about(&svg))
+    let png = output.image(name, picture.to_png())?;
+    output.write(&format!("{name}.svg"), holding(&png))
 }
 
 /// A drawing of the size of a PNG, which holds it.

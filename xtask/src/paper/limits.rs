@@ -97,13 +97,14 @@ fn trace(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::arguments::Experiments;
+    use crate::arguments::{Experiments, Force};
     use crate::interrupt::Interrupt;
 
     #[test]
     fn ctrl_c_ends_the_comparison_of_traces() {
         let interrupt = Interrupt::pressed();
-        let arguments = Experiments { quick: true, jobs: None, out: "out".into(), quiet: true };
+        let (out, force) = ("out".into(), Force::default());
+        let arguments = Experiments { quick: true, jobs: None, out, force, quiet: true };
         let session = Session::new(&arguments, &[], &interrupt);
         let error = Limits::measure(&Config::b21r(), &session).unwrap_err();
         assert!(error.to_string().starts_with("interrupted"), "{error}");

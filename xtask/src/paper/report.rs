@@ -8,9 +8,8 @@ use super::tables::{self, Table};
 use super::trial::{Judged, Trial, Verdict, digits, shown};
 use crate::campaign::VERSION;
 use crate::figures::{Output, fig5};
-use crate::input::about;
 use anyhow::Result;
-use covmap_io::write_json;
+use covmap_io::{MAX_FILE, read_text};
 use serde::Serialize;
 
 /// All that came out.
@@ -85,13 +84,7 @@ pub(super) fn clear(output: &Output) -> Result<()> {
     let kinds = |name: &&str| ["svg", "png", "csv"].map(|kind| format!("{name}.{kind}"));
     let rest = ["table1.csv", "claims.json", "report.html"].map(str::to_owned);
     for name in figures.flat_map(kinds).chain(rest) {
-        let path = output.path(&name);
-        match std::fs::remove_file(&path) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(about(&path)(format!("cannot be removed: {error}")));
-            }
-            _ => {}
-        }
+        output.remove(&name)?;
     }
     Ok(())
 }
@@ -99,9 +92,9 @@ pub(super) fn clear(output: &Output) -> Result<()> {
 impl Report {
     /// Writes `claims.json` and `report.html`.
     pub(super) fn write(&self, output: &Output) -> Result<()> {
-        write_json(output.path("claims.json"), &self.lines())?;
-        let path = output.path("report.html");
-        std::fs::write(&path, self.html(output)).map_err(about(&path))
+        let claims = serde_json::to_string_pretty(&self.lines())?;
+        output.write("claims.json", claims + "\n")?;
+        output.write("report.html", self.html(output))
     }
 
     fn lines(&self) -> Vec<Line<'_>> {
@@ -119,7 +112,7 @@ impl Report {
         for (heading, names) in FIGURES {
             page.heading(2, heading);
             for name in names {
-                let svg = std::fs::read_to_string(output.path(&format!("{name}.svg")));
+                let svg = read_text(output.path(&format!("{name}.svg")), MAX_FILE);
                 svg.into_iter().for_each(|svg| page.drawing(&svg));
             }
             if heading.starts_with("Fig. 5") {
@@ -264,16 +257,23 @@ fn figures(judged: &Judged) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use covmap_io::Replace;
 
     #[test]
     fn what_an_earlier_report_left_is_removed_and_nothing_else() {
         let dir = tempfile::tempdir().unwrap();
-        let output = Output::create(dir.path()).unwrap();
+        let output = Output::create(dir.path(), Replace::Same).unwrap();
         for name in ["figure5b-b21r.svg", "figure7.png", "worlds.csv", "report.html", "mine.svg"] {
-            std::fs::write(output.path(name), "old").unwrap();
+            output.write(name, "old").unwrap();
         }
         clear(&output).unwrap();
-        let left: Vec<_> = std::fs::read_dir(dir.path()).unwrap().flatten().collect();
-        assert!(matches!(&left[..], [entry] if entry.file_name() == "mine.svg"), "{left:?}");
+        let left = std::fs::read_dir(dir.path()).unwrap().flatten();
+        let mut left: Vec<_> = left.map(|entry| entry.file_name()).collect();
+        left.sort();
+        assert_eq!(left, [".covmap-files", "mine.svg"]);
+        // What somebody changed is not removed.
+        output.write("worlds.csv", "new").unwrap();
+        std::fs::write(output.path("worlds.csv"), "corrected").unwrap();
+        assert!(clear(&output).is_err() && output.path("worlds.csv").exists());
     }
 }

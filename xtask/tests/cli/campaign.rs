@@ -151,7 +151,8 @@ fn what_is_done_is_not_done_again_but_what_is_damaged_is() {
     fs::write(&files[5], "").unwrap();
     fs::write(&files[7], &before[7][..before[7].len() - 9]).unwrap();
     fs::copy(&files[8], &files[9]).unwrap();
-    fs::write(shell.path("out/tiny/runs/0.partial"), "cut").unwrap();
+    fs::write(shell.path("out/tiny/runs/0123456789abcdef0123456789abcdef.run.partial"), "cut")
+        .unwrap();
     let typed = shell.expect("campaign tiny.ron --jobs 2", 0);
     assert_eq!(typed.err.lines().count(), 5, "{typed:?}");
     for damaged in [1, 3, 5, 7, 9] {

@@ -72,7 +72,7 @@ fn a_small_room_is_explored_to_its_end() {
     shell.write("room.ron", "(name: \"room\", extent: (width: 2.4, height: 2.0), obstacles: [])");
     let typed = shell.expect("explore room.ron --resolution 0.2 --strategy CL --seed 3", 0);
     assert!(typed.out.contains("explored: nothing is open"), "{typed:?}");
-    let summary = shell.json("out/room-CL-3/summary.json");
+    let summary = shell.json("out/room-CL-3-r0.2/summary.json");
     assert_eq!(summary["ending"], "Explored");
     assert_eq!(summary["cells"]["open"], 0);
 }
@@ -121,7 +121,7 @@ fn an_exploration_is_the_same_run_with_every_kind_of_vector_registers() {
 fn the_same_command_is_the_same_run_on_any_number_of_threads() {
     let shell = Shell::new();
     let hash = |threads: &str, seed: &str| {
-        let mut command = shell.command(&format!("{} --seed {seed} --quiet", short_run()));
+        let mut command = shell.command(&format!("{} --seed {seed} --quiet --force", short_run()));
         if !threads.is_empty() {
             command.env("RAYON_NUM_THREADS", threads);
         }
@@ -146,10 +146,55 @@ fn a_foreign_folder_is_refused_and_one_of_ours_is_replaced() {
     shell.refuse(&short_run(), &["run: was not written by covmap"]);
     std::fs::remove_file(shell.path("run/thesis.txt")).unwrap();
     shell.expect(&short_run(), 3);
-    shell.write("run/note.txt", "");
-    shell.expect(&short_run().replace("30", "5"), 3);
+    shell.write("run/note.txt", "mine");
+    shell.expect(&short_run(), 3);
+    assert!(shell.path("run/note.txt").exists());
+    assert_eq!(shell.json("run/summary.json")["scans"], 30);
+    // Another run does not take its place without a word.
+    let other = short_run().replace("30", "5");
+    shell.refuse(&other, &["run: holds another run (explore lab, IG_CL(.3), seed 1", "--force"]);
+    shell.expect(&format!("{other} --force"), 3);
     assert!(!shell.path("run/note.txt").exists());
     assert_eq!(shell.json("run/summary.json")["scans"], 5);
+    // Nor is what was corrected by hand.
+    shell.write("run/map.yaml", "image: map.pgm");
+    shell.refuse(&other, &["run/map.yaml: is not as covmap wrote it"]);
+}
+
+#[test]
+fn the_names_of_folders_tell_runs_apart() {
+    let shell = Shell::new();
+    let lab = shipped("scenarios/lab.ron");
+    let sonar8 = shipped("configs/sonar8.ron");
+    let b21r = shipped("configs/b21r.ron");
+    let mut names = Vec::new();
+    for (typed, name) in [
+        ("".to_owned(), "lab-IG_CL-0.3-1-max1"),
+        (format!("--config {b21r} --resolution 0.1"), "lab-IG_CL-0.3-1-max1"),
+        ("--resolution 0.2".to_owned(), "lab-IG_CL-0.3-1-r0.2-max1"),
+        ("--start 1,1,-90".to_owned(), "lab-IG_CL-0.3-1-at1_1_-90-max1"),
+        ("--while-driving 0.5".to_owned(), "lab-IG_CL-0.3-1-every0.5-max1"),
+        (format!("--config {sonar8}"), "lab-IG_CL-0.3-1-sonar8-max1"),
+    ] {
+        shell.expect(&format!("explore {lab} --max-scans 1 --quiet {typed}"), 3);
+        names.push(name);
+        let mut entries: Vec<_> = std::fs::read_dir(shell.path("out"))
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        entries.sort();
+        names.sort_unstable();
+        names.dedup();
+        assert_eq!(entries, names, "{typed}");
+    }
+}
+
+#[test]
+fn a_folder_that_holds_an_input_is_not_replaced() {
+    let shell = Shell::new();
+    shell.expect(&short_run().replace("30", "1"), 3);
+    let line = "explore run/map.yaml --resolution 0.2 --max-scans 1 --out run --force";
+    shell.refuse(line, &["run: holds run/map.yaml, which this command reads"]);
 }
 
 #[test]
@@ -192,7 +237,10 @@ fn a_map_of_map_server_is_a_world() {
     let typed = "explore cellar.yaml --resolution 0.2 --start -0.5,0.5,90 --max-scans 4 \
                  --strategy COUNT:5:2 --while-driving 0.3";
     shell.expect(typed, 3);
-    let first = std::fs::read_to_string(shell.path("out/cellar-COUNT-5-2-1/trace.jsonl")).unwrap();
+    let first = std::fs::read_to_string(
+        shell.path("out/cellar-COUNT-5-2-1-r0.2-at-0.5_0.5_90-every0.3-max4/trace.jsonl"),
+    )
+    .unwrap();
     assert!(first.contains("[-0.5,0.5]"), "the start is the one that was typed");
 }
 

@@ -14,3 +14,4 @@ mod map;
 mod readings;
 mod tables;
 mod typed;
+mod writing;

@@ -52,11 +52,11 @@ fn a_log_becomes_a_map_with_all_its_files() {
     let typed = shell.expect("map drive.log --resolution 0.1 --every 0.08", 0);
     assert!(typed.out.contains("30 frames") && !typed.out.contains("skipped"), "{typed:?}");
     assert_eq!(typed.err, "", "nothing of the progress when piped");
-    let folder = shell.path("out/drive-sonar");
+    let folder = shell.path("out/drive-sonar-every0.08");
     for name in FILES {
         assert!(std::fs::metadata(folder.join(name)).unwrap().len() > 0, "{name}");
     }
-    let summary = shell.json("out/drive-sonar/summary.json");
+    let summary = shell.json("out/drive-sonar-every0.08/summary.json");
     let fields = summary.as_object().unwrap();
     for key in KEYS {
         assert!(fields.get(key).is_some_and(|value| !value.is_null()), "{key}");
@@ -197,7 +197,7 @@ fn the_log_of_a_run_is_read_back_as_the_same_scans() {
     let typed = shell.expect("map run.log --resolution 0.2 --every 0 --out map", 0);
     assert!(typed.out.contains("a map of 12 scans") && !typed.out.contains("cones"), "{typed:?}");
     shell.refuse("log nowhere --out a.log", &["nowhere/trace.jsonl: cannot be read"]);
-    shell.refuse("log run --out run", &["run: is there and is no file"]);
+    shell.refuse("log run --out run", &["run: cannot be written: it is a folder"]);
 }
 
 #[test]

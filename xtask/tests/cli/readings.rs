@@ -14,7 +14,7 @@ fn to_the_wall((x, y): (f64, f64), angle: f64) -> f64 {
 }
 
 /// The log of a robot that drives through the room; every third sonar hears nothing.
-fn room(shell: &Shell) {
+pub(crate) fn room(shell: &Shell) {
     let [mut od, mut sonar, mut laser] = [const { String::new() }; 3];
     for i in 0..30u32 {
         let (t, x) = (200 * i, 0.08 * f64::from(i));

@@ -24,7 +24,7 @@ fn the_coverage_of_all_cells_sums_to_the_area_of_the_obstacles() {
     shell.write("areas.ron", text);
     let circle = 32.0 * 0.4 * 0.4 * (std::f64::consts::TAU / 64.0).sin();
     for (resolution, margin) in [(0.1, 3.0), (0.25, 2.0)] {
-        shell.expect(&format!("truth areas.ron --resolution {resolution} --out t.csv"), 0);
+        shell.expect(&format!("truth areas.ron --resolution {resolution} --out t.csv --force"), 0);
         let rows = rows(&shell, "t.csv", "x,y,coverage");
         let shown: f64 =
             rows.iter().map(|[_, _, coverage]| coverage * resolution * resolution).sum();
@@ -44,7 +44,7 @@ fn every_column_of_figure_3_sums_to_one() {
     let shell = Shell::new();
     for config in ["b21r", "paper", "sonar8"] {
         let config = shipped(&format!("configs/{config}.ron"));
-        shell.expect(&format!("model --config {config} --range 1 --out m.csv"), 0);
+        shell.expect(&format!("model --config {config} --range 1 --out m.csv --force"), 0);
         let rows = rows(&shell, "m.csv", "cell_distance,coverage,probability");
         let columns: Vec<&[[f64; 3]]> =
             rows.chunk_by(|a, b| a[0].total_cmp(&b[0]).is_eq()).collect();
@@ -78,7 +78,10 @@ fn a_table_that_cannot_be_written_leaves_nothing() {
     std::fs::create_dir(shell.path("folder")).unwrap();
     shell
         .refuse(&format!("truth {lab} --out nowhere/t.csv"), &["nowhere/t.csv: cannot be written"]);
-    shell.refuse(&format!("truth {lab} --out folder"), &["folder: is there and is no file"]);
+    shell.refuse(
+        &format!("truth {lab} --out folder"),
+        &["folder: cannot be written: it is a folder"],
+    );
     shell.refuse("model --range 1 --out nowhere/m.csv", &["nowhere/m.csv: cannot be written"]);
     shell.refuse("model --range 7 --out m.csv", &["--range 7", "configs/b21r.ron", "usable range"]);
 }

@@ -13,7 +13,8 @@ mod scale;
 mod scene;
 mod svg;
 
-use crate::{ColorMap, FileError};
+use crate::{ColorMap, FileError, Replace, write_file};
+use std::io;
 use std::path::Path;
 
 /// A chart of series of points over two axes.
@@ -210,13 +211,22 @@ impl Figure {
         self.lay_out().to_svg()
     }
 
-    /// Writes the figure as an SVG and as a PNG of twice as many pixels a side.
+    /// The figure as a PNG of twice as many pixels a side.
+    ///
+    /// # Errors
+    /// If it is too large for that.
+    pub fn to_png(&self) -> io::Result<Vec<u8>> {
+        self.lay_out().paint().to_png()
+    }
+
+    /// Writes the figure as an SVG and as a PNG of twice as many pixels a side. Old files are
+    /// replaced.
     ///
     /// # Errors
     /// If a file cannot be written.
     pub fn save(&self, svg: impl AsRef<Path>, png: impl AsRef<Path>) -> Result<(), FileError> {
         let scene = self.lay_out();
-        crate::new_file::write_file(svg.as_ref(), scene.to_svg().as_bytes(), crate::Replace::File)?;
+        write_file(svg, scene.to_svg().as_bytes(), Replace::Any)?;
         scene.paint().save(png.as_ref())
     }
 }

@@ -64,7 +64,7 @@ pub fn save_map_server(
     let greys: Vec<u8> = rows.flatten().map(|coverage| grey(*coverage, thresholds)).collect();
     let comment = format!("covmap, {} m/pixel", grid.resolution());
     let image = pgm_bytes(grid.width(), grid.height(), &comment, &greys);
-    write_file(folder.join(format!("{stem}.pgm")), &image, Replace::File)?;
+    write_file(folder.join(format!("{stem}.pgm")), &image, Replace::Any)?;
     let corner = grid.lower_left();
     let yaml = format!(
         "image: {stem}.pgm\nmode: trinary\nresolution: {:?}\norigin: [{:?}, {:?}, 0.0]\n\
@@ -73,7 +73,7 @@ pub fn save_map_server(
         corner.x,
         corner.y,
     );
-    write_file(folder.join(format!("{stem}.yaml")), yaml.as_bytes(), Replace::File)
+    write_file(folder.join(format!("{stem}.yaml")), yaml.as_bytes(), Replace::Any)
 }
 
 fn grey(coverage: Option<f64>, thresholds: CoverageThresholds) -> u8 {

@@ -3,7 +3,8 @@
 use super::Marker;
 use super::color::Rgb;
 use super::text::text_path;
-use crate::FileError;
+use crate::{FileError, Replace, write_file};
+use std::io;
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke,
     StrokeDash, Transform,
@@ -43,21 +44,22 @@ impl Canvas {
         self.0.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
     }
 
-    /// Writes the image as a PNG.
-    pub(crate) fn save(&self, path: &std::path::Path) -> Result<(), FileError> {
+    /// The image as a PNG.
+    pub(crate) fn to_png(&self) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width(), self.height());
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_depth(png::BitDepth::Eight);
-        let written = encoder.write_header().and_then(|mut writer| {
-            writer.write_image_data(&self.rgb())?;
-            writer.finish()
-        });
-        written.map_err(|error| FileError::Unwritable {
-            path: path.to_path_buf(),
-            message: error.to_string(),
-        })?;
-        crate::new_file::write_file(path, &bytes, crate::Replace::File)
+        let mut writer = encoder.write_header()?;
+        writer.write_image_data(&self.rgb())?;
+        writer.finish()?;
+        Ok(bytes)
+    }
+
+    /// Writes the image as a PNG.
+    pub(crate) fn save(&self, path: &std::path::Path) -> Result<(), FileError> {
+        let png = self.to_png().map_err(FileError::io(path, "written"))?;
+        write_file(path, &png, Replace::Any)
     }
 
     /// Colours a rectangle of whole pixels, which must lie in the canvas.

@@ -12,6 +12,7 @@ pub use color::{ColorMap, Rgb, coverage_color};
 use crate::FileError;
 use covmap::{Grid, Raster};
 use nalgebra::Point2;
+use std::io;
 use std::path::Path;
 
 /// The longest side of a map in a picture that is chosen by itself \[pixels\].
@@ -237,7 +238,15 @@ impl Picture {
         (canvas.width(), canvas.height(), canvas.rgb())
     }
 
-    /// Writes the picture as a PNG.
+    /// The picture as a PNG.
+    ///
+    /// # Errors
+    /// If it is too large for that.
+    pub fn to_png(&self) -> io::Result<Vec<u8>> {
+        self.render().to_png()
+    }
+
+    /// Writes the picture as a PNG. An old file is replaced.
     ///
     /// # Errors
     /// If the file cannot be written.
