@@ -82,7 +82,7 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
     let (default, _) = input::config(None)?;
     let (named, _) = input::config(config.as_deref())?;
     let other = config.as_deref().filter(|_| named != default);
-    let finer = resolution.filter(|resolution| *resolution != named.resolution);
+    let finer = resolution.and_then(|resolution| output::unlike(resolution, named.resolution));
     let start = start.map(|start| {
         let (place, heading) = (start.translation.vector, start.rotation.angle().to_degrees());
         let [x, y, degrees] = [place.x, place.y, heading].map(output::typed);

@@ -173,16 +173,15 @@ fn folder_name(arguments: &Map) -> Result<PathBuf> {
         return Ok(out.clone());
     }
     let (named, _) = named_config(arguments)?;
-    let unlike = |value: f64, usual: f64| (value != usual).then_some(value);
-    let finer = resolution.and_then(|resolution| unlike(resolution, named.resolution));
+    let finer = resolution.and_then(|resolution| output::unlike(resolution, named.resolution));
     Ok(output::named([
         Some(log_name(&arguments.log)),
         Some(sensor_name(arguments.sensor).to_owned()),
         config.as_deref().map(output::stem),
         poses.as_deref().map(output::stem),
         finer.map(|resolution| format!("r{resolution}")),
-        unlike(*every, 0.05).map(|every| format!("every{every}")),
-        unlike(*every_degrees, 5.0).map(|degrees| format!("turn{degrees}")),
+        output::unlike(*every, 0.05).map(|every| format!("every{every}")),
+        output::unlike(*every_degrees, 5.0).map(|degrees| format!("turn{degrees}")),
     ]))
 }
 

@@ -91,6 +91,11 @@ pub(crate) fn stem(file: &Path) -> String {
     stem.chars().map(plain).collect()
 }
 
+/// A number for the name of a folder, if it is not the usual one.
+pub(crate) fn unlike(number: f64, usual: f64) -> Option<f64> {
+    number.total_cmp(&usual).is_ne().then_some(number)
+}
+
 /// A number as it was typed, and not with what its computing added.
 pub(crate) fn typed(number: f64) -> f64 {
     (number * 1e6).round() / 1e6
@@ -103,7 +108,7 @@ mod tests {
     #[test]
     fn names_are_plain() {
         assert_eq!(stem(Path::new("configs/my robot\n2.ron")), "my_robot_2");
-        assert_eq!(typed(90.0_f64.to_radians().to_degrees()), 90.0);
+        assert_eq!(typed(90.0_f64.to_radians().to_degrees()).to_string(), "90");
         let name = named(["lab".to_owned().into(), None, Some("r0.2".to_owned())]);
         assert_eq!(name, Path::new("out/lab-r0.2"));
     }
