@@ -192,18 +192,18 @@ fn look(path: &Path, run: &str, replace: Replace) -> Result<Present, FileError> 
     if !kind.is_dir() {
         return refuse("is a file, not an output folder");
     }
-    match Ledger::read(&path.join(MARKER))? {
-        Some(ledger) => {
-            if replace == Replace::Same {
-                check(path, &ledger, run)?;
-            }
-            Ok(Present::Replaceable(ledger))
-        }
-        None if names(path).map_err(FileError::io(path, "looked at"))?.is_empty() => {
-            Ok(Present::Replaceable(Ledger::default()))
-        }
-        None => refuse("was not written by covmap and is not replaced; name another output folder"),
+    let names = names(path).map_err(FileError::io(path, "looked at"))?;
+    if names.iter().all(|name| name == MARKER) {
+        // Nothing can be lost: a full disk may leave no more than an empty marker.
+        return Ok(Present::Replaceable(Ledger::default()));
     }
+    let Some(ledger) = Ledger::read(&path.join(MARKER))? else {
+        return refuse("was not written by covmap and is not replaced; name another output folder");
+    };
+    if replace == Replace::Same {
+        check(path, &ledger, run)?;
+    }
+    Ok(Present::Replaceable(ledger))
 }
 
 /// Checks that a folder holds the same run, that nobody changed what covmap wrote there, and
