@@ -52,7 +52,7 @@ const CLOSED_PIPE: u8 = 141;
 fn main() -> ExitCode {
     let arguments = match Arguments::try_parse() {
         Ok(arguments) => arguments,
-        Err(told) => return ended(say::clap(&told)),
+        Err(told) => return ended(say::clap(told)),
     };
     let done = match arguments.command {
         Command::Explore(arguments) => explore::run(&arguments),

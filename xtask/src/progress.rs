@@ -2,6 +2,7 @@
 
 use crate::say;
 use covmap_explore::{Mission, View};
+use covmap_io::escaped;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
@@ -56,7 +57,7 @@ impl Progress {
         let Some(line) = &self.line else { return };
         let now = Instant::now();
         if now >= self.next {
-            line.set_message(text());
+            line.set_message(escaped(&text()).to_string());
             self.next = now + PAUSE;
         }
     }
@@ -64,7 +65,7 @@ impl Progress {
     /// Says that something else takes time now.
     pub(crate) fn say(&self, text: &str) {
         if let Some(line) = &self.line {
-            line.set_message(text.to_owned());
+            line.set_message(escaped(text).to_string());
         }
     }
 

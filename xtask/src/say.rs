@@ -1,5 +1,6 @@
 //! Words to the user, a line each: what rules the terminal is escaped, and numbers are short.
 
+use clap::error::{ContextKind, ContextValue};
 use covmap_io::escaped;
 use std::fmt::Display;
 use std::io::{self, Write};
@@ -17,7 +18,15 @@ pub(crate) fn line(text: impl Display) {
 }
 
 /// Prints what clap has to say, and returns how the program ends.
-pub(crate) fn clap(told: &clap::Error) -> ExitCode {
+pub(crate) fn clap(mut told: clap::Error) -> ExitCode {
+    let typed = |(kind, value): (ContextKind, &ContextValue)| match value {
+        ContextValue::String(text) => Some((kind, ContextValue::String(escaped(text).to_string()))),
+        _ => None,
+    };
+    let typed: Vec<_> = told.context().filter_map(typed).collect();
+    for (kind, text) in typed {
+        told.insert(kind, text);
+    }
     let printed = told.print();
     if !told.use_stderr() {
         keep(printed);

@@ -42,13 +42,15 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         survey.posts.len(),
         found.views
     );
-    write_file(out, to_ron(out, &survey, Some(&comment))?.as_bytes(), replace)?;
     let size = high - low;
     let cell = PICTURE_CELL.max(size.max() / PICTURE_CELLS);
     let grid = Grid::covering(low, size, cell, 4).map_err(about(log))?;
     let evidence = survey.evidence(&grid, scans(), &parameters)?;
     let png = picture(&grid, &survey, &found_in, &evidence, &parameters, log)?.to_png();
     write_file(&image, &png.map_err(about(&image))?, replace)?;
+    // Last: a survey that was corrected by hand is what is most likely refused, with its picture
+    // the same.
+    write_file(out, to_ron(out, &survey, Some(&comment))?.as_bytes(), replace)?;
     if !quiet {
         say::line(format!("{} walls, {} posts", survey.walls.len(), survey.posts.len()));
         if !found_in.skipped.is_empty() {

@@ -11,6 +11,9 @@ use std::path::{Path, PathBuf};
 
 /// The file by which a folder that covmap wrote is known, with the list of what it wrote.
 const MARKER: &str = ".covmap";
+/// What the old folder is called while the new one takes its place: a name that no person gives,
+/// since what has it is taken for covmap's.
+const ASIDE: &str = ".covmap-old";
 const MARKER_TEXT: &str = "covmap wrote this folder; the same run replaces it\n";
 
 /// A folder of results in the making.
@@ -63,7 +66,7 @@ impl OutputFolder {
             let reason = "is no name for an output folder";
             return Err(FileError::Folder { path: given.to_path_buf(), reason });
         }
-        let (partial, aside) = (beside(&target, ".partial"), beside(&target, ".old"));
+        let (partial, aside) = (beside(&target, ".partial"), beside(&target, ASIDE));
         let run = crate::escaped(run).to_string();
         if let Ok(marker) = open_input(partial.join(MARKER)) {
             lock(&partial, &marker)?;
@@ -106,14 +109,14 @@ impl OutputFolder {
     ///
     /// The old folder is renamed, the new one takes its place, and only then the old one is
     /// removed: whatever happens, one of them is there whole. If the old one cannot be
-    /// removed, it stays as `DIR.old`.
+    /// removed, it stays as `DIR.covmap-old`.
     ///
     /// # Errors
     /// If something that must not be replaced has come to stand there meanwhile, or a folder
     /// cannot be renamed. Then all results stay in `DIR.partial`.
     pub fn finish(mut self) -> Result<PathBuf, FileError> {
         self.list().map_err(FileError::io(&self.partial, "written"))?;
-        let aside = beside(&self.target, ".old");
+        let aside = beside(&self.target, ASIDE);
         let rename_new = || {
             fs::rename(&self.partial, &self.target).map_err(FileError::io(&self.target, "written"))
         };

@@ -184,11 +184,26 @@ fn results_are_kept_when_a_stranger_takes_their_place() {
 }
 
 #[test]
+fn a_folder_that_somebody_put_aside_stays() {
+    let root = tempfile::tempdir().unwrap();
+    let dir = root.path().join("out");
+    for _ in 0..2 {
+        write(&dir, "new").unwrap();
+        if !root.path().join("out.old").exists() {
+            fs::rename(&dir, root.path().join("out.old")).unwrap();
+        }
+    }
+    write(&dir, "newer").unwrap();
+    assert_eq!(names(root.path()), ["out", "out.old"]);
+    assert_eq!(fs::read_to_string(root.path().join("out.old/a.txt")).unwrap(), "new");
+}
+
+#[test]
 fn old_results_return_when_their_replacement_was_cut_short() {
     let root = tempfile::tempdir().unwrap();
     let dir = root.path().join("out");
     write(&dir, "old").unwrap();
-    fs::rename(&dir, beside(&dir, ".old")).unwrap();
+    fs::rename(&dir, beside(&dir, ASIDE)).unwrap();
     drop(begin(&dir).unwrap());
     assert_eq!(fs::read_to_string(dir.join("a.txt")).unwrap(), "old");
 }
