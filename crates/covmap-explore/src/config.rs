@@ -1,6 +1,6 @@
 //! All parameters of a run: belief and behaviour.
 
-use covmap::GridError;
+use covmap::{GridError, short};
 use covmap_model::{ModelError, ModelParameters, SensorModel};
 use covmap_plan::{PlannerError, PlannerParameters};
 use covmap_sonar::{RingError, RingSpecification, SonarRing};
@@ -40,7 +40,7 @@ pub struct Config {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConfigError {
     /// A number of the robot is out of its interval.
-    #[error("robot.{name}: {value} must lie in [{min}, {max}]")]
+    #[error("robot.{name}: {} must lie in [{min}, {max}]", short(value))]
     Robot {
         /// The parameter.
         name: &'static str,

@@ -2,7 +2,7 @@
 
 mod rows;
 
-use covmap::{Cell, Grid};
+use covmap::{Cell, Grid, short};
 use covmap_sonar::SonarRing;
 use nalgebra::{Isometry2, Point2, Vector2};
 use rows::Rows;
@@ -42,7 +42,10 @@ pub enum FootprintRule {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FootprintError {
     /// The half-angle is impossible.
-    #[error("model.footprint: half_angle {0} rad must lie in [0, 1.5], and above 0 for sectors")]
+    #[error(
+        "model.footprint: half_angle {} rad must lie in [0, 1.5], and above 0 for sectors",
+        short(.0)
+    )]
     HalfAngle(f64),
     /// Two sensors look the same way, so that sectors cannot tell them apart.
     #[error(
@@ -131,6 +134,26 @@ impl Footprint {
         self.sectors.len()
     }
 
+    /// About how many cells of side `resolution` \[m\] a beam covers up to a distance from its
+    /// sensor \[m\], rather too many than too few.
+    ///
+    /// # Panics
+    /// If there is no such beam.
+    pub fn cells_about(&self, beam: usize, reach: f64, resolution: f64) -> f64 {
+        let Sector { sensor, apex, first, last, .. } = &self.sectors[beam];
+        let (width, offset) =
+            (libm::atan2(first.perp(last), first.dot(last)).abs(), (sensor - apex).norm());
+        let area = 0.5 * width * ((reach + offset) * (reach + offset) - offset * offset);
+        // A line passes at most one and a half cells for each cell of its length.
+        area / (resolution * resolution) + 1.5 * reach / resolution + 4.0
+    }
+
+    /// How far from the robot's centre a beam covers cells, up to a distance from its sensor \[m\].
+    pub fn farthest(&self, reach: f64) -> f64 {
+        let from_center = |sector: &Sector| sector.sensor.coords.norm();
+        self.sectors.iter().map(from_center).fold(0.0, f64::max) + reach
+    }
+
     /// Visits the cells of a grid that a beam covers up to a distance from its sensor, row
     /// by row.
     ///
@@ -172,8 +195,7 @@ impl Footprint {
     /// The first and the last cell of a rectangle of the grid that holds all footprints.
     /// It is empty, the last before the first, if the pose is not finite.
     pub(crate) fn extent(&self, grid: &Grid, pose: &Isometry2<f64>, reach: f64) -> (Cell, Cell) {
-        let from_center = |sector: &Sector| sector.sensor.coords.norm();
-        let radius = self.sectors.iter().map(from_center).fold(0.0, f64::max) + reach;
+        let radius = self.farthest(reach);
         let (center, margin) = (Point2::from(pose.translation.vector), Vector2::repeat(radius));
         if !radius.is_finite() || !center.iter().all(|v| v.is_finite()) {
             return (Cell::new(0, 0), Cell::new(-1, -1));
@@ -256,7 +278,7 @@ impl Sector {
         let y = grid.center(cell).y;
         let (mut centers, mut distances) = ([0.0; WIDE], [0.0; WIDE]);
         for (dx, x) in (0..).zip(&mut centers) {
-            *x = grid.center(cell.offset(dx, 0)).x;
+            *x = grid.center(Cell::new(cell.x + dx, cell.y)).x;
         }
         for (x, d) in centers.iter().zip(&mut distances) {
             let from_sensor = Vector2::new(*x, y) - self.sensor.coords;

@@ -65,7 +65,7 @@ impl OccupancyGrid {
             let pinned = self.pinned.get(cell).copied().unwrap_or(true);
             if let Some(value) = self.log_odds.get_mut(cell).filter(|_| delta <= half && !pinned) {
                 let sum = value.unwrap_or(0.0) + if delta < -half { miss } else { hit };
-                *value = Some(bounds.map_or(sum, |(low, high)| sum.clamp(low, high)));
+                *value = Some(bounds.map_or(sum, |(low, high)| sum.max(low).min(high)));
             }
         });
     }

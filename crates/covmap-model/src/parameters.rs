@@ -1,7 +1,7 @@
 //! The parameters of the sensor model.
 
 use crate::{FootprintError, FootprintRule};
-use covmap::{MAX_BINS, MIN_BINS};
+use covmap::{MAX_BINS, MIN_BINS, short};
 use serde::{Deserialize, Serialize};
 
 /// A function that grows with the distance of a cell and with the measured range:
@@ -86,7 +86,7 @@ pub enum ModelError {
     #[error("model.bins: {0} is not in {MIN_BINS}..={MAX_BINS}")]
     Bins(usize),
     /// A parameter is not in its interval.
-    #[error("model.{name}: {value} must lie in [{min}, {max}]")]
+    #[error("model.{name}: {} must lie in [{min}, {max}]", short(value))]
     OutOfRange {
         /// The parameter.
         name: &'static str,
@@ -104,7 +104,9 @@ pub enum ModelError {
     NotMonotone(&'static str),
     /// σ_in does not exceed every σ_out.
     #[error(
-        "model.sigma_in: σ_in {sigma_in} must exceed σ_out {sigma_out} at range {range} m (the end cell is the least certain)"
+        "model.sigma_in: σ_in {} must exceed σ_out {} at range {range} m (the end cell is the least certain)",
+        short(sigma_in),
+        short(sigma_out)
     )]
     SigmaIn {
         /// σ_in.
@@ -116,7 +118,8 @@ pub enum ModelError {
     },
     /// σ_out is narrower than half a bin.
     #[error(
-        "model.sigma_out: σ {sigma} is below half a bin's width {half_bin}: the histogram cannot show it; use more bins or a larger base"
+        "model.sigma_out: σ {} is below half a bin's width {half_bin}: the histogram cannot show it; use more bins or a larger base",
+        short(sigma)
     )]
     SigmaBelowHalfBin {
         /// The smallest σ_out.

@@ -35,7 +35,9 @@ pub enum RingError {
     )]
     Geometry(usize),
     /// A sensor has impossible ranges.
-    #[error("sensor {0}: ranges must satisfy 0 ≤ min_range {1} < max_range {2} ≤ {MAX_LENGTH} m")]
+    #[error(
+        "sensor {0}: ranges must satisfy 0 ≤ min_range {1:?} < max_range {2:?} ≤ {MAX_LENGTH} m"
+    )]
     Ranges(usize, f64, f64),
 }
 

@@ -100,6 +100,13 @@ impl CoverageMap {
         Ok(map)
     }
 
+    /// How many bytes a map takes.
+    pub fn bytes(grid: &Grid, bins: usize) -> u64 {
+        // A posterior in f32; of evidence, entropy and mode one each.
+        let by_cell = bins.saturating_mul(size_of::<f32>()).saturating_add(1 + 4 + 1);
+        u64::try_from(grid.len().saturating_mul(by_cell)).unwrap_or(u64::MAX)
+    }
+
     /// The geometry of the map.
     pub fn grid(&self) -> &Grid {
         &self.grid

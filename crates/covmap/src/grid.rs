@@ -1,5 +1,6 @@
 //! The geometry of a grid: cells ↔ world.
 
+use crate::short;
 use nalgebra::{Point2, Vector2};
 use serde::{Deserialize, Serialize};
 
@@ -25,10 +26,10 @@ impl Cell {
         Self { x, y }
     }
 
-    /// The cell `dx` columns to the right and `dy` rows up.
+    /// The cell `dx` columns to the right and `dy` rows up; no farther out than there are numbers.
     #[must_use]
     pub fn offset(self, dx: i32, dy: i32) -> Self {
-        Self { x: self.x + dx, y: self.y + dy }
+        Self { x: self.x.saturating_add(dx), y: self.y.saturating_add(dy) }
     }
 }
 
@@ -48,7 +49,7 @@ impl PartialOrd for Cell {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GridError {
     /// The resolution is not a positive length.
-    #[error("the resolution {0} m must be a positive, finite number")]
+    #[error("the resolution {} m must be a positive, finite number", short(.0))]
     Resolution(f64),
     /// The origin or the size is not a finite number, or the size is not positive.
     #[error("the grid's origin {0:?} and size {1:?} must be finite, and the size positive")]
@@ -150,7 +151,7 @@ impl Grid {
                 clippy::cast_sign_loss,
                 reason = "at least 1; saturates, and is then refused as too large"
             )]
-            (count as usize).saturating_add(2 * margin)
+            (count as usize).saturating_add(margin.saturating_mul(2))
         };
         #[allow(clippy::cast_precision_loss, reason = "a margin is a few cells")]
         let shift = margin as f64 * resolution;
@@ -188,10 +189,11 @@ impl Grid {
         self.width * self.height
     }
 
-    /// The cell that holds a point, if it lies in the grid.
+    /// The cell that holds a point, if it lies in the grid; a point that is no number does not.
     pub fn cell_at(&self, point: Point2<f64>) -> Option<Cell> {
         let cell = self.unbounded_cell_at(point);
-        self.index(cell).map(|_| cell)
+        let is_place = point.iter().all(|v| v.is_finite());
+        self.index(cell).filter(|_| is_place).map(|_| cell)
     }
 
     /// The cells that meet the box between two corners \[m\], in row-major order.
@@ -207,7 +209,8 @@ impl Grid {
         rows.flat_map(move |y| columns.clone().map(move |x| Cell::new(x, y)))
     }
 
-    /// The cell that holds a point, whether it lies in the grid or not.
+    /// The cell that holds a point, whether it lies in the grid or not; the one farthest out where
+    /// there are no numbers for it, and column or row 0 for what is no number.
     #[inline]
     pub fn unbounded_cell_at(&self, point: Point2<f64>) -> Cell {
         let scaled = (point - self.lower_left) / self.resolution;
@@ -235,7 +238,7 @@ impl Grid {
         (x < self.width && y < self.height).then(|| y * self.width + x)
     }
 
-    /// The cell with a row-major index.
+    /// The cell with a row-major index, whether it lies in the grid or not.
     #[inline]
     pub fn cell(&self, index: usize) -> Cell {
         #[allow(
@@ -266,6 +269,16 @@ mod tests {
         assert_eq!(grid.cell_at(Point2::new(-0.5, 2.49)), Some(Cell::new(1, 0)));
         assert_eq!(grid.cell_at(Point2::new(1.0, 2.0)), None);
         assert_eq!(grid.cell_at(Point2::new(-1.01, 2.0)), None);
+        assert_eq!(grid.cell_at(Point2::new(f64::NAN, 2.0)), None);
+    }
+
+    #[test]
+    fn cells_far_out_stay_out() {
+        let far = Cell::new(i32::MAX, i32::MIN);
+        assert_eq!(far.offset(i32::MAX, i32::MIN), far);
+        let grid = Grid::new(Point2::origin(), 0.5, 4, 2).unwrap();
+        let at = grid.unbounded_cell_at(Point2::new(1e300, -1e300));
+        assert_eq!((at, grid.index(at)), (far, None));
     }
 
     #[test]
@@ -285,6 +298,10 @@ mod tests {
         assert_eq!(make(1.0, usize::MAX, 2), Err(GridError::TooLarge(usize::MAX, 2)));
         let huge = Grid::covering(Point2::origin(), Vector2::new(1e300, 1.0), 1e-3, 2);
         assert!(matches!(huge, Err(GridError::TooLarge(..))));
+        let wide = |margin| Grid::covering(Point2::origin(), Vector2::new(1.0, 1.0), 1e-9, margin);
+        for margin in [1 << 31, 1 << 63, usize::MAX] {
+            assert!(wide(margin).is_err(), "{margin}");
+        }
     }
 
     proptest! {

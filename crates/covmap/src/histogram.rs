@@ -16,10 +16,10 @@ pub const PROBABILITY_FLOOR: f64 = 1e-9;
 /// The coverage at which bin `bin` of `bins` stands: `bin / (bins − 1)`.
 ///
 /// Choice: bins stand **at** coverages and not between them, so that 0, 1 and, with 11 bins,
-/// the 0.2 of the paper's Fig. 1 are exact.
+/// the 0.2 of the paper's Fig. 1 are exact. Fewer than two bins stand as two do.
 pub fn bin_coverage(bin: usize, bins: usize) -> f64 {
     #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
-    let ratio = bin as f64 / (bins - 1) as f64;
+    let ratio = bin as f64 / (bins.max(2) - 1) as f64;
     ratio
 }
 
@@ -143,6 +143,13 @@ mod tests {
     #[test]
     fn entropy_is_maximal_for_uniform() {
         assert!((Histogram::uniform(11).entropy() - libm::log(11.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn bins_stand_at_coverages() {
+        let coverages = |bins| (0..bins).map(|bin| bin_coverage(bin, bins)).collect::<Vec<_>>();
+        assert_eq!(coverages(3), [0.0, 0.5, 1.0]);
+        assert_eq!((bin_coverage(0, 0), bin_coverage(0, 1)), (0.0, 0.0));
     }
 
     #[test]

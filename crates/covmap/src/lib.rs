@@ -31,6 +31,7 @@ mod histogram;
 pub mod lanes;
 mod proper_score;
 mod raster;
+mod short;
 mod steps;
 
 pub use belief_file::BeliefFileError;
@@ -39,4 +40,5 @@ pub use grid::{Cell, Grid, GridError, MAX_CELLS};
 pub use histogram::{Histogram, MAX_BINS, MIN_BINS, PROBABILITY_FLOOR, bin_coverage, product};
 pub use proper_score::{Class, LIKELIHOOD_FLOOR, crps, log_likelihood, lower_bin, randomised_pit};
 pub use raster::Raster;
+pub use short::short;
 pub use steps::{STEPS, Steps, neighbour, opposite, step_between};

@@ -67,12 +67,19 @@ impl<T> Raster<T> {
 impl<T> std::ops::Index<usize> for Raster<T> {
     type Output = T;
     /// The value of the cell with a row-major index.
+    ///
+    /// # Panics
+    /// If there is no such cell.
     fn index(&self, index: usize) -> &T {
         &self.values[index]
     }
 }
 
 impl<T> std::ops::IndexMut<usize> for Raster<T> {
+    /// The same, to be changed.
+    ///
+    /// # Panics
+    /// If there is no such cell.
     fn index_mut(&mut self, index: usize) -> &mut T {
         &mut self.values[index]
     }

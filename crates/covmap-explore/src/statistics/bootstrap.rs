@@ -6,11 +6,13 @@ use covmap_world::{stream, uniform};
 /// Observations in groups; the groups are independent of each other, their members need not be.
 pub type Grouped<T> = Vec<Vec<T>>;
 
+/// More resamples than this are not drawn.
+const MOST: usize = 1_000_000;
 /// So many resamples must have a statistic for its error to be known.
 const FEWEST: usize = 20;
 
 /// The statistic of all observations with its standard error, by drawing whole groups with
-/// replacement, `times` times. `None` if the statistic has no value for all of them.
+/// replacement, `times` times, at most a million. `None` if the statistic has no value for all of them.
 ///
 /// The spread of a mean over k groups that are drawn so is too small by √((k − 1)/k); that is
 /// put right. Resamples for which the statistic has no value are left out. The same seed gives
@@ -29,6 +31,7 @@ pub fn bootstrap<T>(
         return Some(certain);
     }
     let mut random = stream(seed, "bootstrap", 0);
+    let times = times.min(MOST);
     let mut resampled = Vec::with_capacity(times);
     for _ in 0..times {
         let mut drawn = Vec::with_capacity(all.len());
@@ -41,7 +44,7 @@ pub fn bootstrap<T>(
         }
         resampled.extend(statistic(&drawn).filter(|value| value.is_finite()));
     }
-    if resampled.len() < FEWEST.min(times) {
+    if resampled.len() < FEWEST.min(times).max(1) {
         return Some(certain);
     }
     #[allow(clippy::cast_precision_loss, reason = "a few thousand resamples")]
@@ -87,6 +90,18 @@ mod tests {
         let groups: Grouped<f64> = vec![vec![1.0, 3.0], vec![2.0], vec![9.0, 4.0]];
         assert_eq!(bootstrap(&groups, 500, 7, mean), bootstrap(&groups, 500, 7, mean));
         assert_ne!(bootstrap(&groups, 500, 7, mean), bootstrap(&groups, 500, 8, mean));
+    }
+
+    #[test]
+    fn more_resamples_than_can_be_drawn_are_a_million() {
+        // Each costs nothing: the statistic gives up.
+        let groups: Grouped<f64> = vec![vec![1.0], vec![2.0]];
+        let first = std::cell::Cell::new(true);
+        let once = |_: &[&f64]| first.replace(false).then_some(1.0);
+        let estimate = bootstrap(&groups, usize::MAX, 1, once).unwrap();
+        assert!(estimate.standard_error.is_infinite());
+        let none = bootstrap(&groups, 0, 1, mean).unwrap();
+        assert!(none.standard_error.is_infinite());
     }
 
     #[test]

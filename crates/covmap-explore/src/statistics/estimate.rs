@@ -36,18 +36,21 @@ impl Estimate {
         Some(Self { value: mean, standard_error, groups: n })
     }
 
-    /// The central interval that holds the true value with a probability of `level`; `None`
-    /// with fewer than two groups.
+    /// The central interval that holds the true value with a probability of `level` in \[0, 1);
+    /// `None` for another level, and with fewer than two groups.
     pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
+        if !(0.0..1.0).contains(&level) {
+            return None;
+        }
         let quantile = self.student()?.inverse_cdf(0.5 + 0.5 * level);
         let half = quantile * self.standard_error;
         Some((self.value - half, self.value + half))
     }
 
     /// The p-value of "the true value is not below `bound`": small if it is below. 1 with
-    /// fewer than two groups.
+    /// fewer than two groups, and for a bound that is no number.
     pub fn p_below(&self, bound: f64) -> f64 {
-        self.student().map_or(1.0, |student| {
+        self.student().filter(|_| !bound.is_nan()).map_or(1.0, |student| {
             if self.standard_error > 0.0 {
                 student.cdf((self.value - bound) / self.standard_error)
             } else {
@@ -106,6 +109,17 @@ mod tests {
         assert!((estimate.p_below(3.0 + 2.776_445) - 0.025).abs() < 1e-6);
         assert!((estimate.p_above(3.0 - 2.776_445) - 0.025).abs() < 1e-6);
         assert!((estimate.p_below(3.0) - 0.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_is_no_probability_has_no_interval() {
+        let estimate = Estimate { value: 3.0, standard_error: 1.0, groups: 5 };
+        for level in [2.0, 1.0, -0.1, f64::NAN, f64::INFINITY] {
+            assert_eq!(estimate.interval(level), None, "{level}");
+        }
+        assert!(estimate.interval(0.0).is_some());
+        assert!(estimate.p_below(f64::NAN) >= 1.0 && estimate.p_above(f64::NAN) >= 1.0);
+        assert!(estimate.p_below(f64::INFINITY) < 1e-9);
     }
 
     #[test]

@@ -10,7 +10,7 @@ use std::cmp::Ordering;
 /// τ_b = (concordant − discordant) / √((pairs − tied in a) · (pairs − tied in b))
 /// ```
 pub fn kendall_tau(a: &[f64], b: &[f64]) -> Option<f64> {
-    let (mut agreement, mut ordered_a, mut ordered_b) = (0i32, 0i32, 0i32);
+    let (mut agreement, mut ordered_a, mut ordered_b) = (0i64, 0i64, 0i64);
     let n = a.len().min(b.len());
     for i in 0..n {
         for j in 0..i {
@@ -25,8 +25,10 @@ pub fn kendall_tau(a: &[f64], b: &[f64]) -> Option<f64> {
             ordered_b += sb * sb;
         }
     }
-    let scale = (f64::from(ordered_a) * f64::from(ordered_b)).sqrt();
-    (scale > 0.0).then(|| f64::from(agreement) / scale)
+    #[allow(clippy::cast_precision_loss, reason = "fewer pairs than a list can have")]
+    let [agreement, a, b] = [agreement, ordered_a, ordered_b].map(|pairs| pairs as f64);
+    let scale = (a * b).sqrt();
+    (scale > 0.0).then(|| agreement / scale)
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::Estimate;
 
 /// The share of successes among independent trials as an estimate, after Agresti and Coull:
 /// two successes and two failures are added, so that "always" is not certain. `None` without
-/// trials.
+/// trials, and for more successes than trials.
 ///
 /// # Formula
 /// ```text
@@ -15,7 +15,11 @@ pub fn share_estimate(successes: usize, trials: usize) -> Option<Estimate> {
     let (k, n) = (successes as f64, trials as f64);
     let p = (k + 2.0) / (n + 4.0);
     let standard_error = (p * (1.0 - p) / (n + 4.0)).sqrt();
-    (trials > 0).then_some(Estimate { value: p, standard_error, groups: trials })
+    (trials > 0 && successes <= trials).then_some(Estimate {
+        value: p,
+        standard_error,
+        groups: trials,
+    })
 }
 
 #[cfg(test)]

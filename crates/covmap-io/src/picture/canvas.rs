@@ -10,6 +10,9 @@ use tiny_skia::{
     StrokeDash, Transform,
 };
 
+/// The widest line [pixels].
+const WIDEST: f32 = 1e4;
+
 /// An image that is drawn on; points in pixels from the top left.
 #[derive(Debug, Clone)]
 pub(crate) struct Canvas(Pixmap);
@@ -87,9 +90,10 @@ impl Canvas {
         }
     }
 
-    /// Draws along a path.
+    /// Draws along a path, at most as wide as a picture; nothing if its width is no number.
     pub(crate) fn stroke(&mut self, path: Option<Path>, color: Rgb, width: f32, opacity: f32) {
-        if let Some(path) = path {
+        if let Some(path) = path.filter(|_| width >= 0.0) {
+            let width = width.min(WIDEST);
             let (line_cap, line_join) = (LineCap::Round, LineJoin::Round);
             let stroke = Stroke { width, line_cap, line_join, ..Stroke::default() };
             self.0.stroke_path(&path, &paint(color, opacity), &stroke, Transform::identity(), None);

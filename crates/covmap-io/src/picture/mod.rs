@@ -161,6 +161,7 @@ impl Picture {
     }
 
     /// Draws a line through points. A point that is not finite breaks it; a single one is a dot.
+    /// Of a width that is no number, or negative, nothing is seen.
     pub fn polyline(&mut self, points: &[Point2<f64>], color: Rgb, width: f64) -> &mut Self {
         self.overlays.push(Overlay::Line { points: points.to_vec(), color, width });
         self

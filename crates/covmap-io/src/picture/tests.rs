@@ -119,3 +119,19 @@ fn a_long_legend_is_wrapped_and_makes_the_picture_higher() {
         .flat_map(|y| &pixels[(y * width as usize + width as usize - 31) * 3..][..90]);
     assert!(right.into_iter().all(|byte| *byte == 255), "nothing runs into the margin");
 }
+
+#[test]
+fn a_line_of_no_width_that_is_a_number_is_not_seen() {
+    let plain = Picture::new(some_grid(30, 20)).pixels();
+    let points = [Point2::new(0.1, 0.1), Point2::new(1.0, 1.0)];
+    for width in [f64::NAN, -1.0, f64::NEG_INFINITY] {
+        let mut picture = Picture::new(some_grid(30, 20));
+        picture.polyline(&points, Rgb::BLUE, width);
+        assert!(picture.pixels() == plain, "{width}");
+    }
+    for width in [1e300, f64::INFINITY] {
+        let mut picture = Picture::new(some_grid(30, 20));
+        picture.polyline(&points, Rgb::BLUE, width);
+        assert!(picture.pixels() != plain, "{width}");
+    }
+}

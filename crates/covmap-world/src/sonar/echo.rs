@@ -6,6 +6,7 @@
 
 use crate::geometry::{Face, Kind};
 use crate::sonar::SonarPhysics;
+use crate::sonar::physics::{MOST_BOUNCES, MOST_RAYS};
 use crate::world::World;
 use covmap_sonar::Beam;
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -75,8 +76,9 @@ impl<'a> Echoes<'a> {
 
     /// The angles from the axis of the rays across the cone: both sides, the axis, evenly.
     fn fan(&self) -> impl Iterator<Item = f64> + use<> {
+        let rays = self.physics.cone_rays.min(MOST_RAYS);
         #[allow(clippy::cast_possible_truncation, reason = "at most 500")]
-        let side = if self.half_angle > LINE { (self.physics.cone_rays / 2) as i32 } else { 0 };
+        let side = if self.half_angle > LINE { (rays / 2) as i32 } else { 0 };
         let step = self.half_angle / f64::from(side.max(1));
         (-side..=side).map(move |k| f64::from(k) * step)
     }
@@ -102,7 +104,7 @@ impl<'a> Echoes<'a> {
     fn follow(&self, angle: f64, limit: f64) -> Option<f64> {
         let (mut origin, mut direction) = (self.origin, self.toward(angle));
         let mut path = 0.0;
-        for _ in 0..=self.physics.max_bounces {
+        for _ in 0..=self.physics.max_bounces.min(MOST_BOUNCES) {
             let hit = self.world.first_hit(origin, direction, limit - path)?;
             path += hit.distance;
             let face = &self.world.faces[hit.face];

@@ -1,8 +1,14 @@
 //! How simulated sonars behave.
 
 use crate::scenario::Surface;
+use covmap::short;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
+
+/// The most rays across a cone.
+pub(super) const MOST_RAYS: usize = 1001;
+/// The most mirrors that an echo goes by.
+pub(super) const MOST_BOUNCES: u8 = 8;
 
 /// What a sonar reports when the echo comes back before it can listen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -60,7 +66,7 @@ pub struct SonarPhysics {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PhysicsError {
     /// A number is out of its range.
-    #[error("sonar physics: {name} {value} must lie in [{low}, {high}]")]
+    #[error("sonar physics: {name} {} must lie in [{low}, {high}]", short(value))]
     OutOfRange {
         /// The parameter.
         name: &'static str,
@@ -73,7 +79,8 @@ pub enum PhysicsError {
     },
     /// The probabilities of the kinds of false readings exceed one.
     #[error(
-        "sonar physics: the probabilities p_spurious_no_echo, p_uniform and p_crosstalk sum to {0}, more than 1"
+        "sonar physics: the probabilities p_spurious_no_echo, p_uniform and p_crosstalk sum to {}, more than 1",
+        short(.0)
     )]
     Probabilities(f64),
 }
@@ -121,16 +128,16 @@ impl SonarPhysics {
     /// If one is not finite or out of its range.
     pub fn validate(&self) -> Result<(), PhysicsError> {
         #[allow(clippy::cast_precision_loss, reason = "refused long before it is inexact")]
-        let rays = self.cone_rays as f64;
+        let [rays, most_rays] = [self.cone_rays, MOST_RAYS].map(|rays| rays as f64);
         // A wall never answers along itself: 89.99°.
         let grazing = FRAC_PI_2 - 1e-4;
         let ranges = [
             ("critical_angle_rough", self.critical_angle_rough, 0.0, grazing),
             ("critical_angle_smooth", self.critical_angle_smooth, 0.0, grazing),
-            ("cone_rays", rays, 11.0, 1001.0),
+            ("cone_rays", rays, 11.0, most_rays),
             ("cone_shrink_per_metre", self.cone_shrink_per_metre, 0.0, FRAC_PI_2),
             ("cone_min_half_angle", self.cone_min_half_angle, 0.0, FRAC_PI_2),
-            ("max_bounces", f64::from(self.max_bounces), 0.0, 8.0),
+            ("max_bounces", f64::from(self.max_bounces), 0.0, f64::from(MOST_BOUNCES)),
             ("edge_range", self.edge_range, 0.0, 1000.0),
             ("noise_min", self.noise_min, 0.0, 10.0),
             ("noise_relative", self.noise_relative, 0.0, 1.0),

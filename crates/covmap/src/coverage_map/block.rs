@@ -2,7 +2,7 @@
 
 use super::Evidence;
 use crate::CoverageMap;
-use crate::histogram::PROBABILITY_FLOOR;
+use crate::histogram::{MAX_BINS, PROBABILITY_FLOOR};
 use crate::lanes::{LANES, Lanes, TOGETHER, flat, ln};
 
 /// Evidence for up to [`LANES`] different cells, side by side, to be multiplied into a map.
@@ -18,8 +18,9 @@ impl EvidenceBlock {
     /// A lane without a cell.
     pub const NO_CELL: u32 = u32::MAX;
 
-    /// A block for maps of so many bins.
+    /// A block for maps of so many bins, at most [`MAX_BINS`].
     pub fn new(bins: usize) -> Self {
+        let bins = bins.min(MAX_BINS);
         let ones = [1.0; LANES];
         let weights = vec![[ones; TOGETHER]; bins.div_ceil(TOGETHER)];
         Self { weights, prior: vec![ones; bins] }
@@ -145,6 +146,9 @@ pub(crate) fn entropy(probabilities: &[f32]) -> f32 {
 
 impl CoverageMap {
     /// Whether a measurement can change the cell with a row-major index: not if it is pinned.
+    ///
+    /// # Panics
+    /// If there is no such cell.
     #[inline(always)]
     pub fn is_changeable(&self, index: usize) -> bool {
         self.evidence[index] != Evidence::Pinned
