@@ -85,9 +85,26 @@ fn covering(criterion: &mut Criterion) {
     });
 }
 
+fn building(criterion: &mut Criterion) {
+    let place = |i: u32, by: f64| 2.0 + 6.0 * (f64::from(i) * by).fract();
+    for count in [250, 500, 1000, 2000] {
+        let circle = |i: u32| Shape::Circle {
+            center: (place(i, 0.618_034), place(i, 0.414_214)),
+            radius: 1.0,
+        };
+        let obstacles =
+            (0..count).map(|i| Obstacle { shape: circle(i), surface: Surface::Rough }).collect();
+        let extent = Extent { width: 10.0, height: 10.0 };
+        let scenario = Scenario { name: "heap".into(), extent, start: None, obstacles };
+        criterion.bench_function(&format!("a world of {count} overlapping circles"), |b| {
+            b.iter(|| World::from_scenario(black_box(&scenario), Surface::Rough));
+        });
+    }
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(10);
-    targets = firing, covering
+    targets = firing, covering, building
 }
 criterion_main!(benches);

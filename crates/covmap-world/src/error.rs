@@ -1,7 +1,11 @@
 //! What is wrong with a world.
 
+use covmap::short;
+
 /// The longest side of a world \[m\].
 pub const MAX_EXTENT: f64 = 1e4;
+/// The largest heading of a start, either way \[rad\].
+pub(crate) const MAX_HEADING: f64 = 1e6;
 /// The shortest length of anything in it \[m\].
 pub const MIN_LENGTH: f64 = 1e-4;
 /// The largest number of obstacles.
@@ -10,6 +14,8 @@ pub const MAX_OBSTACLES: usize = 100_000;
 pub(crate) const MAX_POLYGON_POINTS: usize = 10_000;
 /// The largest number of points of all outlines; a circle has 64.
 pub(crate) const MAX_POINTS: usize = 1_000_000;
+/// The largest number of pairs of a face and an outline that may bury it.
+pub(crate) const MAX_BURIALS: usize = 10_000_000;
 /// The largest number of pairs of neighbouring faces that are looked at for corners.
 pub(crate) const MAX_PAIRS: usize = 20_000_000;
 
@@ -22,7 +28,11 @@ pub enum WorldError {
     #[error("the name {0:?} must have 1 to 100 characters, none of them a slash or a control")]
     Name(String),
     /// The extent has an impossible size.
-    #[error("the extent of {0} × {1} m must lie between {MIN_LENGTH} and {MAX_EXTENT} m a side")]
+    #[error(
+        "the extent of {} × {} m must lie between {MIN_LENGTH} and {MAX_EXTENT} m a side",
+        short(.0),
+        short(.1)
+    )]
     Extent(f64, f64),
     /// There are too many obstacles.
     #[error("{0} obstacles are more than {MAX_OBSTACLES}; merge some")]
@@ -35,7 +45,8 @@ pub enum WorldError {
     TooDense,
     /// An obstacle has a number that is not finite or lies absurdly far out.
     #[error(
-        "obstacle {obstacle} ({kind}): {value} must be a finite number within ±{limit}",
+        "obstacle {obstacle} ({kind}): {} must be a finite number within ±{limit}",
+        short(value),
         limit = 2.0 * MAX_EXTENT
     )]
     Number {
@@ -48,7 +59,8 @@ pub enum WorldError {
     },
     /// An obstacle has a length that is not positive, or too small.
     #[error(
-        "obstacle {obstacle} ({kind}): its {what} of {value} m must be at least {MIN_LENGTH} m"
+        "obstacle {obstacle} ({kind}): its {what} of {} m must be at least {MIN_LENGTH} m",
+        short(value)
     )]
     Length {
         /// Which one.
@@ -85,7 +97,7 @@ pub enum WorldError {
     SelfCrossing {
         /// Which one.
         obstacle: usize,
-        /// The point, counted from 0 without repetitions, where one side starts.
+        /// The point, counted from 0, where one side starts.
         first: usize,
         /// The point where the other side starts.
         second: usize,
@@ -100,10 +112,21 @@ pub enum WorldError {
         /// Which one.
         obstacle: usize,
     },
-    /// The start is not a pose inside the extent.
-    #[error("the start ({0}, {1}; heading {2}) must be finite and inside the extent")]
-    StartOutside(f64, f64, f64),
+    /// A polygon encloses next to nothing.
+    #[error("obstacle {obstacle} (Polygon): its area of {} m² is too small", short(area))]
+    TooSmall {
+        /// Which one.
+        obstacle: usize,
+        /// Its area \[m²\].
+        area: f64,
+    },
+    /// The start is not inside the extent.
+    #[error("the start ({}, {}) must lie inside the extent", short(.0), short(.1))]
+    StartOutside(f64, f64),
+    /// The start's heading is no angle.
+    #[error("the start's heading of {} rad must lie within ±{MAX_HEADING} rad", short(.0))]
+    StartHeading(f64),
     /// The start lies inside an obstacle.
-    #[error("the start ({0}, {1}) lies inside an obstacle; move it to a free place")]
+    #[error("the start ({}, {}) lies inside an obstacle; move it to a free place", short(.0), short(.1))]
     StartInObstacle(f64, f64),
 }

@@ -3,25 +3,89 @@
 use crate::error::{
     MAX_EXTENT, MAX_OBSTACLES, MAX_POINTS, MAX_POLYGON_POINTS, MIN_LENGTH, WorldError,
 };
+use crate::geometry::{Bounds, Index};
 use crate::scenario::{Obstacle, Shape, Surface};
 use nalgebra::{Point2, Vector2};
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 const CIRCLE_SIDES: u32 = 64;
+/// The smallest area of a polygon [m²].
+const MIN_AREA: f64 = MIN_LENGTH * MIN_LENGTH * 1e-3;
 /// Points in a row that are nearer to each other are one point [m].
 const SAME_POINT: f64 = 1e-12;
+
+/// Outlines of more sides than this have an index of them.
+const MANY_SIDES: usize = 128;
 
 /// A simple polygon, counter-clockwise, with at least three points.
 #[derive(Debug, Clone)]
 pub(crate) struct Outline {
     pub(crate) points: Vec<Point2<f64>>,
     pub(crate) surface: Surface,
+    bounds: Bounds,
+    index: Option<Box<Index>>,
 }
 
 impl Outline {
-    pub(crate) fn bounds(&self) -> (Point2<f64>, Point2<f64>) {
-        let first = self.points[0];
-        self.points.iter().fold((first, first), |(low, high), p| (low.inf(p), high.sup(p)))
+    pub(crate) fn new(points: Vec<Point2<f64>>, surface: Surface) -> Self {
+        let first = points[0];
+        let around = |(low, high): Bounds, p: &Point2<f64>| (low.inf(p), high.sup(p));
+        let bounds = points.iter().fold((first, first), around);
+        let mut outline = Self { points, surface, bounds, index: None };
+        if outline.points.len() > MANY_SIDES {
+            let side = |i| {
+                let (a, b) = outline.side(i);
+                (a.inf(&b), a.sup(&b))
+            };
+            let boxes: Vec<Bounds> = (0..outline.points.len()).map(side).collect();
+            outline.index = Some(Box::new(Index::new(bounds.0, &boxes)));
+        }
+        outline
+    }
+
+    pub(crate) fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// Where a side begins and ends.
+    fn side(&self, i: usize) -> (Point2<f64>, Point2<f64>) {
+        (self.points[i], self.points[if i + 1 < self.points.len() { i + 1 } else { 0 }])
+    }
+
+    /// The sides whose boxes meet a box.
+    pub(crate) fn sides_meeting(
+        &self,
+        (low, high): Bounds,
+    ) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> + '_ {
+        let (all, few) = match &self.index {
+            None => (0..self.points.len(), None),
+            Some(index) => (0..0, Some(index.meeting((low, high)))),
+        };
+        let sides = all.chain(few.into_iter().flatten()).map(|i| self.side(i));
+        sides.filter(move |(a, b)| {
+            a.x.min(b.x) <= high.x
+                && low.x <= a.x.max(b.x)
+                && a.y.min(b.y) <= high.y
+                && low.y <= a.y.max(b.y)
+        })
+    }
+
+    /// Whether a point lies inside: the winding number of the sides around it, counted along
+    /// a ray to the right.
+    pub(crate) fn holds(&self, point: Point2<f64>) -> bool {
+        let (low, high) = self.bounds;
+        if point.x < low.x || point.y < low.y || high.x < point.x || high.y < point.y {
+            return false;
+        }
+        let mut winding = 0;
+        for (a, b) in self.sides_meeting((point, Point2::new(high.x, point.y))) {
+            let along = b - a;
+            if (a.y <= point.y) != (b.y <= point.y) && along.perp(&(point - a)) * along.y > 0.0 {
+                winding += if b.y > a.y { 1 } else { -1 };
+            }
+        }
+        winding > 0
     }
 }
 
@@ -42,9 +106,19 @@ pub(crate) fn outlines(obstacles: &[Obstacle]) -> Result<Vec<Outline>, WorldErro
     let outline = |(number, obstacle): (usize, &Obstacle)| {
         let check = Check { obstacle: number, kind: obstacle.shape.kind() };
         let points = check.points(&obstacle.shape)?;
-        Ok(Outline { points, surface: obstacle.surface })
+        Ok(Outline::new(points, obstacle.surface))
     };
     obstacles.iter().enumerate().map(outline).collect()
+}
+
+/// The outlines without those that are there before, point by point.
+pub(crate) fn distinct(mut outlines: Vec<Outline>) -> Vec<Outline> {
+    let mut seen = BTreeSet::new();
+    outlines.retain(|outline| {
+        let bits = outline.points.iter().map(|p| (p.x.to_bits(), p.y.to_bits()));
+        seen.insert((outline.surface == Surface::Rough, bits.collect::<Vec<_>>()))
+    });
+    outlines
 }
 
 /// Twice the signed area of a polygon, relative to its first point.
@@ -121,10 +195,13 @@ impl Check {
             return Err(WorldError::TooManyPolygonPoints { obstacle, points: given.len() });
         }
         let mut points: Vec<Point2<f64>> = Vec::with_capacity(given.len());
-        for &pair in given {
+        // Which of the given points each is.
+        let mut numbers = Vec::with_capacity(given.len());
+        for (number, &pair) in given.iter().enumerate() {
             let point = self.point(pair)?;
             if points.last().is_none_or(|last| (point - last).norm() > SAME_POINT) {
                 points.push(point);
+                numbers.push(number);
             }
         }
         while points.len() > 1 && (points[points.len() - 1] - points[0]).norm() <= SAME_POINT {
@@ -134,13 +211,23 @@ impl Check {
             return Err(WorldError::TooFewPoints { obstacle, points: points.len() });
         }
         let area = twice_area(&points);
-        if area.abs() < 2.0 * MIN_LENGTH * MIN_LENGTH * 1e-3 {
+        let is_flat = area.abs() < 2.0 * MIN_AREA;
+        if is_flat && lie_on_a_line(&points) {
             return Err(WorldError::Flat { obstacle });
         }
         if let Some((first, second)) = crossing_sides(&points) {
-            let Point2 { coords } = points[first.max(second)];
-            let (x, y) = (coords.x, coords.y);
-            return Err(WorldError::SelfCrossing { obstacle, first, second, x, y });
+            let Point2 { coords } = meeting_point(&points, first, second);
+            let (first, second) = (numbers[first], numbers[second]);
+            return Err(WorldError::SelfCrossing {
+                obstacle,
+                first,
+                second,
+                x: coords.x,
+                y: coords.y,
+            });
+        }
+        if is_flat {
+            return Err(WorldError::TooSmall { obstacle, area: 0.5 * area.abs() });
         }
         if area < 0.0 {
             points.reverse();
@@ -175,6 +262,29 @@ fn crossing_sides(points: &[Point2<f64>]) -> Option<(usize, usize)> {
         }
     }
     None
+}
+
+/// Whether no point is farther from the line through two that are far apart than the shortest
+/// length.
+fn lie_on_a_line(points: &[Point2<f64>]) -> bool {
+    let farthest_from = |from: Point2<f64>| {
+        let farther =
+            |a: &&Point2<f64>, b: &&Point2<f64>| (*a - from).norm().total_cmp(&(*b - from).norm());
+        points.iter().max_by(farther).copied().unwrap_or(from)
+    };
+    let from = farthest_from(points[0]);
+    let along = farthest_from(from) - from;
+    points.iter().all(|p| along.perp(&(p - from)).abs() <= MIN_LENGTH * along.norm())
+}
+
+/// About where two sides meet, each given by its first point.
+fn meeting_point(points: &[Point2<f64>], first: usize, second: usize) -> Point2<f64> {
+    let side = |i: usize| (points[i], points[(i + 1) % points.len()]);
+    let ((a, b), (c, d)) = (side(first), side(second));
+    let sine = (b - a).perp(&(d - c));
+    let share = (c - a).perp(&(d - c)) / sine;
+    // Sides that lie on each other, or next to each other.
+    if (0.0..=1.0).contains(&share) { a + (b - a) * share } else { c }
 }
 
 /// Whether the path a → b → c turns back onto itself.
@@ -214,18 +324,32 @@ mod tests {
     #[test]
     fn a_polygon_that_is_not_simple_is_refused() {
         let bow = [(0.0, 0.0), (2.0, 1.0), (2.0, 0.0), (0.0, 2.0)];
+        // Both of its halves are of one size: it encloses no area on balance.
+        let even_bow = [(1.0, 1.0), (3.0, 3.0), (3.0, 1.0), (1.0, 3.0)];
         let spike = [(0.0, 0.0), (1.0, 0.0), (3.0, 0.0), (1.0, 0.0), (1.0, 1.0)];
         let pinch = [(0.0, 0.0), (2.0, 0.0), (1.0, 1.0), (2.0, 2.0), (0.0, 2.0), (1.0, 1.0)];
         let line = [(0.0, 0.0), (1.0, 1.0), (2.0, 2.0)];
-        for refused in [&bow[..], &spike, &pinch] {
+        for refused in [&bow[..], &even_bow, &spike, &pinch] {
             let error = polygon(refused).unwrap_err();
             assert!(matches!(error, WorldError::SelfCrossing { obstacle: 3, .. }), "{error}");
         }
         assert_eq!(polygon(&line), Err(WorldError::Flat { obstacle: 3 }));
+        let speck = [(0.0, 0.0), (1e-7, 0.0), (0.0, 1e-7)];
+        assert_eq!(polygon(&speck), Err(WorldError::Flat { obstacle: 3 }));
         let few = polygon(&[(0.0, 0.0), (1.0, 1.0), (0.0, 0.0)]).unwrap_err();
         assert_eq!(
             few.to_string(),
             "obstacle 3 (Polygon): 2 different points; a polygon needs at least 3"
+        );
+    }
+
+    #[test]
+    fn where_a_polygon_crosses_itself_is_said_by_its_own_points() {
+        let bow = [(1.0, 1.0), (1.0, 1.0), (3.0, 3.0), (3.0, 1.0), (1.0, 3.0)];
+        assert_eq!(
+            polygon(&bow).unwrap_err().to_string(),
+            "obstacle 3 (Polygon): the sides from points 0 and 3 cross or touch near \
+             (2.000, 2.000); split it into simple polygons"
         );
     }
 

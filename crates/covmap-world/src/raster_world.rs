@@ -90,7 +90,7 @@ fn rectangle(grid: &Grid, x: Range<i32>, y: Range<i32>, surface: Surface) -> Out
     let low = grid.lower_corner(Cell::new(x.start, y.start));
     let high = grid.lower_corner(Cell::new(x.end, y.end));
     let points = vec![low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y)];
-    Outline { points, surface }
+    Outline::new(points, surface)
 }
 
 fn is_solid_cell(solid: &Raster<bool>, x: i32, y: i32, outside: bool) -> bool {

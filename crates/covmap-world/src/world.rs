@@ -1,13 +1,15 @@
 //! The world itself: faces, solids and what they enclose.
 
-use crate::error::{MAX_EXTENT, MIN_LENGTH, WorldError};
-use crate::geometry::{Bounds, Face, Feature, Index, feature};
-use crate::outline::{Outline, outlines};
+use crate::error::{MAX_BURIALS, MAX_EXTENT, MAX_HEADING, MIN_LENGTH, WorldError};
+use crate::geometry::{Bounds, Exposed, Face, Feature, Index, feature};
+use crate::outline::{Outline, distinct, outlines};
 use crate::raster_world;
 use crate::scenario::{Scenario, Surface};
 use covmap::{Grid, GridError, Raster};
 use nalgebra::{Isometry2, Point2, Vector2};
+use rayon::prelude::*;
 use std::f64::consts::TAU;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// A grid reaches at least this far beyond the extent [m] …
 const MARGIN: f64 = 0.30;
@@ -26,6 +28,8 @@ pub struct World {
     /// What is solid inside the extent; with `disjoint`, no two overlap.
     pub(crate) outlines: Vec<Outline>,
     pub(crate) disjoint: bool,
+    outline_index: Index,
+    /// Without those that are buried in a solid.
     pub(crate) faces: Vec<Face>,
     index: Index,
     pub(crate) features: Vec<Feature>,
@@ -51,23 +55,21 @@ impl World {
         if !size.iter().all(|v| (MIN_LENGTH..=MAX_EXTENT).contains(v)) {
             return Err(WorldError::Extent(size.x, size.y));
         }
-        let outlines = outlines(&scenario.obstacles)?;
+        let outlines = distinct(outlines(&scenario.obstacles)?);
         let (low, high) = (Point2::origin(), Point2::from(size));
-        let mut faces = Vec::new();
-        let mut features = Vec::new();
-        for outline in &outlines {
-            add_ring(&mut faces, &mut features, &outline.points, outline.surface);
-        }
         // Clockwise: the solid is on the left, outside.
         let border = [low, Point2::new(low.x, high.y), high, Point2::new(high.x, low.y)];
-        add_ring(&mut faces, &mut features, &border, outside);
         let (name, extent) = (&scenario.name, (low, high));
-        let mut world = Self::new(name, extent, outlines, faces, features)?;
-        world.find_corners()?;
+        let mut world = Self::new(name, extent, outlines, Vec::new(), Vec::new())?;
+        world.find_faces(&border, outside)?;
         if let Some(start) = scenario.start {
             let (x, y, heading) = (start.x, start.y, start.heading);
-            if !heading.is_finite() || heading.abs() > 1e6 || !world.is_inside(Point2::new(x, y)) {
-                return Err(WorldError::StartOutside(x, y, heading));
+            // Not a number is no heading.
+            if !(-MAX_HEADING..=MAX_HEADING).contains(&heading) {
+                return Err(WorldError::StartHeading(heading));
+            }
+            if !world.is_inside(Point2::new(x, y)) {
+                return Err(WorldError::StartOutside(x, y));
             }
             if world.is_solid(Point2::new(x, y)) {
                 return Err(WorldError::StartInObstacle(x, y));
@@ -120,6 +122,8 @@ impl World {
         let boxes: Vec<Bounds> = faces.iter().map(Face::bounds).collect();
         let index = Index::new(low, &boxes);
         let feature_index = index_of(low, &features);
+        let boxes: Vec<Bounds> = outlines.iter().map(Outline::bounds).collect();
+        let outline_index = Index::new(low, &boxes);
         let (name, start, disjoint) = (name.to_owned(), None, false);
         Ok(Self {
             name,
@@ -128,6 +132,7 @@ impl World {
             start,
             outlines,
             disjoint,
+            outline_index,
             faces,
             index,
             features,
@@ -135,11 +140,31 @@ impl World {
         })
     }
 
-    /// Adds the corners between different outlines, and drops what is hidden in a solid.
-    fn find_corners(&mut self) -> Result<(), WorldError> {
-        let mut features = feature::between(&self.faces, &self.index)?;
-        features.append(&mut self.features);
-        features.retain(|f| self.touches_free_space(f.at));
+    /// Finds the faces of all outlines and of the border that are not buried, and the corners,
+    /// edges and seams that they make in free space.
+    fn find_faces(&mut self, border: &[Point2<f64>], outside: Surface) -> Result<(), WorldError> {
+        let rings = self.outlines.iter().map(|o| (o.points.as_slice(), o.surface));
+        let faces_of = |(number, (points, surface)): (usize, (&[Point2<f64>], Surface))| {
+            let faces = points.iter().zip(points.iter().cycle().skip(1));
+            faces.map(|(a, b)| (number, Face::new(*a, *b, surface))).collect::<Vec<_>>()
+        };
+        let all: Vec<(usize, Face)> =
+            rings.chain([(border, outside)]).enumerate().flat_map(faces_of).collect();
+        let pairs = AtomicUsize::new(0);
+        let exposed: Vec<Exposed> = all
+            .par_iter()
+            .map(|(number, face)| self.exposed(face, *number, &pairs))
+            .collect::<Result<_, _>>()?;
+        let mut features = joints(&all, &exposed);
+        let left = all.into_iter().zip(exposed).filter(|(_, exposed)| !exposed.is_empty());
+        let (faces, exposed): (Vec<Face>, Vec<Exposed>) =
+            left.map(|((_, face), exposed)| (face, exposed)).unzip();
+        let boxes: Vec<Bounds> = faces.iter().map(Face::bounds).collect();
+        (self.faces, self.index) = (faces, Index::new(self.low, &boxes));
+        features.extend(feature::between(&self.faces, &exposed, &self.index)?);
+        let in_free_space =
+            features.into_par_iter().filter(|(f, free)| self.touches_free_space(f.at, *free));
+        let mut features: Vec<Feature> = in_free_space.map(|(feature, _)| feature).collect();
         features.sort_by(|f, g| {
             f.at.x.total_cmp(&g.at.x).then(f.at.y.total_cmp(&g.at.y)).then(f.kind.cmp(&g.kind))
         });
@@ -147,6 +172,18 @@ impl World {
         self.feature_index = index_of(self.low, &features);
         self.features = features;
         Ok(())
+    }
+
+    /// What all outlines but its own leave of a face. Counts how many it looked at.
+    fn exposed(&self, face: &Face, own: usize, all: &AtomicUsize) -> Result<Exposed, WorldError> {
+        let mut pairs = 0;
+        let others = self.outline_index.meeting(face.bounds()).filter(|number| *number != own);
+        let others = others.inspect(|_| pairs += 1).take(MAX_BURIALS);
+        let exposed =
+            Exposed::new(face, self.bounds(), others.map(|number| &self.outlines[number]));
+        // What is counted does not depend on the order.
+        let pairs = pairs + all.fetch_add(pairs, Ordering::Relaxed);
+        if pairs > MAX_BURIALS { Err(WorldError::TooDense) } else { Ok(exposed) }
     }
 
     /// The world's name.
@@ -200,20 +237,10 @@ impl World {
 
     /// Whether a point lies inside a solid or outside of the extent.
     pub fn is_solid(&self, point: Point2<f64>) -> bool {
-        if !self.is_inside(point) {
-            return true;
-        }
-        // The winding number around the point of all faces, counted along a ray to the right.
-        // The border runs clockwise around what is free: −1 there, and more in a solid.
-        let right = Point2::new(f64::INFINITY, point.y);
-        let mut winding = 0;
-        for face in self.index.meeting((point, right)) {
-            let Face { a, b, along, .. } = self.faces[face];
-            if (a.y <= point.y) != (b.y <= point.y) && along.perp(&(point - a)) * along.y > 0.0 {
-                winding += if b.y > a.y { 1 } else { -1 };
-            }
-        }
-        winding >= 0
+        // Not a number is outside. Solids hold their lower and left borders only.
+        let free = (self.low.x..self.high.x).contains(&point.x)
+            && (self.low.y..self.high.y).contains(&point.y);
+        !free || self.outline_index.meeting((point, point)).any(|i| self.outlines[i].holds(point))
     }
 
     /// The distance at which a ray first meets a solid \[m\], if within `max` \[m\]; 0 if it
@@ -242,13 +269,18 @@ impl World {
         self.index.meeting(bounds)
     }
 
-    /// Whether there is free space a hair beside a point.
-    fn touches_free_space(&self, point: Point2<f64>) -> bool {
+    /// Whether there is free space a hair beside a point: looked for in 16 directions, first
+    /// where it is likely.
+    fn touches_free_space(&self, point: Point2<f64>, likely: Vector2<f64>) -> bool {
+        const DIRECTIONS: i32 = 16;
         let hair = |k: i32| {
-            let (sin, cos) = libm::sincos(TAU * (f64::from(k) + 0.3) / 16.0);
+            let (sin, cos) = libm::sincos(TAU * (f64::from(k) + 0.3) / f64::from(DIRECTIONS));
             point + Vector2::new(cos, sin) * 1e-5
         };
-        (0..16).any(|k| !self.is_solid(hair(k)))
+        let turns = libm::atan2(likely.y, likely.x) / TAU * f64::from(DIRECTIONS);
+        #[allow(clippy::cast_possible_truncation, reason = "at most half a turn")]
+        let first = turns.round() as i32;
+        (first..first + DIRECTIONS).any(|k| !self.is_solid(hair(k.rem_euclid(DIRECTIONS))))
     }
 
     fn is_inside(&self, point: Point2<f64>) -> bool {
@@ -268,17 +300,17 @@ fn index_of(origin: Point2<f64>, features: &[Feature]) -> Index {
     Index::new(origin, &boxes)
 }
 
-/// Adds the faces of a closed ring of points, and what they make where they join.
-fn add_ring(
-    faces: &mut Vec<Face>,
-    features: &mut Vec<Feature>,
-    points: &[Point2<f64>],
-    surface: Surface,
-) {
-    let first = faces.len();
-    let next = points.iter().cycle().skip(1);
-    faces.extend(points.iter().zip(next).map(|(&a, &b)| Face::new(a, b, surface)));
-    let ring = &faces[first..];
-    let after = ring.iter().cycle().skip(1);
-    features.extend(ring.iter().zip(after).filter_map(|(f, g)| feature::of_joint(f, g)));
+/// What the faces of each ring make where they join, if that is exposed, each with the direction
+/// where free space may be.
+fn joints(rings: &[(usize, Face)], exposed: &[Exposed]) -> Vec<(Feature, Vector2<f64>)> {
+    let mut found = Vec::new();
+    let mut exposed = exposed.iter();
+    for ring in rings.chunk_by(|(ring, _), (next, _)| ring == next) {
+        let after = ring.iter().cycle().skip(1);
+        for (((_, face), (_, next)), exposed) in ring.iter().zip(after).zip(&mut exposed) {
+            let joint = feature::of_joint(face, next).filter(|_| exposed.holds(face.length));
+            found.extend(joint.map(|joint| (joint, face.normal() + next.normal())));
+        }
+    }
+    found
 }

@@ -1,8 +1,7 @@
 //! Where faces meet: concave corners, which answer every sonar, and convex edges.
 
 use crate::error::{MAX_PAIRS, WorldError};
-use crate::geometry::Face;
-use crate::geometry::Index;
+use crate::geometry::{Exposed, Face, Index};
 use nalgebra::{Point2, Vector2};
 
 /// Choice: faces that turn by less than 30° into each other make neither a corner nor an
@@ -39,8 +38,13 @@ pub(crate) fn of_joint(before: &Face, after: &Face) -> Option<Feature> {
 }
 
 /// The corners and seams that faces of different outlines make: crossings, and ends that
-/// stand on another face. Neighbours in an outline are left to [`of_joint`].
-pub(crate) fn between(faces: &[Face], index: &Index) -> Result<Vec<Feature>, WorldError> {
+/// stand on another face, each with the direction where free space may be. Neighbours in an
+/// outline are left to [`of_joint`].
+pub(crate) fn between(
+    faces: &[Face],
+    exposed: &[Exposed],
+    index: &Index,
+) -> Result<Vec<(Feature, Vector2<f64>)>, WorldError> {
     let mut found = Vec::new();
     let mut pairs = 0_usize;
     for (i, face) in faces.iter().enumerate() {
@@ -51,14 +55,18 @@ pub(crate) fn between(faces: &[Face], index: &Index) -> Result<Vec<Feature>, Wor
             if pairs > MAX_PAIRS {
                 return Err(WorldError::TooDense);
             }
-            found.extend(crossing(face, &faces[j]));
+            found.extend(crossing((face, &exposed[i]), (&faces[j], &exposed[j])));
         }
     }
     Ok(found)
 }
 
-/// What two faces make that meet so that of each a part lies before the other.
-fn crossing(one: &Face, other: &Face) -> Option<Feature> {
+/// What two faces make that meet so that of each a part lies before the other, where both are
+/// exposed.
+fn crossing(
+    (one, exposed): (&Face, &Exposed),
+    (other, other_exposed): (&Face, &Exposed),
+) -> Option<(Feature, Vector2<f64>)> {
     let sine = one.along.perp(&other.along);
     if sine.abs() < PARALLEL {
         return None;
@@ -66,11 +74,13 @@ fn crossing(one: &Face, other: &Face) -> Option<Feature> {
     let s = (other.a - one.a).perp(&other.along) / sine;
     let t = (other.a - one.a).perp(&one.along) / sine;
     let within = |v: f64, face: &Face| (-MEETING..=face.length + MEETING).contains(&v);
-    if !(within(s, one) && within(t, other)) {
+    if !(within(s, one) && within(t, other) && exposed.holds(s) && other_exposed.holds(t)) {
         return None;
     }
     let before = |face: &Face, of: &Face| of.height(face.a).max(of.height(face.b)) > 10.0 * MEETING;
     let flat = one.along.dot(&other.along) > SHARP_COSINE;
     let kind = if flat { Kind::Seam } else { Kind::Corner };
-    (before(one, other) && before(other, one)).then(|| Feature { at: one.a + one.along * s, kind })
+    let feature = Feature { at: one.a + one.along * s, kind };
+    let free = one.normal() + other.normal();
+    (before(one, other) && before(other, one)).then_some((feature, free))
 }

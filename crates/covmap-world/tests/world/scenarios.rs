@@ -1,6 +1,6 @@
 //! Scenarios as files, good and hostile.
 
-use crate::build::{rectangle, scenario, wall, with_start};
+use crate::build::{rectangle, scenario, wall, with_start, world};
 use covmap_world::{Scenario, Shape, Surface, World, WorldError};
 use nalgebra::{Point2, Vector2};
 use proptest::prelude::*;
@@ -84,7 +84,7 @@ fn bad_scenarios_are_refused_in_one_clear_sentence() {
         "the start (4.2, 3.2) lies inside an obstacle",
     );
     refused(&with_start(free.clone(), 9.0, 3.0, 0.0), "inside the extent");
-    refused(&with_start(free.clone(), 1.0, 3.0, f64::NAN), "heading NaN");
+    refused(&with_start(free.clone(), 1.0, 3.0, f64::NAN), "heading of NaN rad");
     refused(&Scenario { name: "../x".into(), ..free }, "\"../x\" must have");
 }
 
@@ -94,9 +94,18 @@ fn too_much_is_refused() {
     let many = scenario(8.0, 6.0, &vec![circle.clone(); 100_001], Surface::Rough);
     let error = World::from_scenario(&many, Surface::Rough).unwrap_err();
     assert_eq!(error, WorldError::TooManyObstacles(100_001));
-    let piled = scenario(8.0, 6.0, &vec![circle; 10_000], Surface::Rough);
+    // So near to each other that none buries another.
+    let beside = |k| Shape::Circle { center: (1.0 + 1e-9 * f64::from(k), 1.0), radius: 0.5 };
+    let piled = scenario(8.0, 6.0, &(0..10_000).map(beside).collect::<Vec<_>>(), Surface::Rough);
     let error = World::from_scenario(&piled, Surface::Rough).unwrap_err();
     assert_eq!(error, WorldError::TooDense);
+}
+
+#[test]
+fn the_same_thing_ten_thousand_times_is_there_once() {
+    let circle = Shape::Circle { center: (3.0, 3.0), radius: 0.5 };
+    let world = world(8.0, 6.0, &vec![circle; 10_000], Surface::Rough);
+    assert!((world.clearance(Point2::new(3.0, 2.0)) - 0.5).abs() < 1e-12);
 }
 
 fn any_number() -> impl Strategy<Value = f64> {
@@ -136,6 +145,39 @@ proptest! {
             if let Ok(grid) = world.grid(size.0.max(size.1) / 20.0) {
                 prop_assert!(world.coverage(&grid).values().iter().all(|c| (0.0..=1.0).contains(c)));
             }
+        }
+    }
+}
+
+/// Circles that lie on top of each other, and a free ring around them.
+fn heap(count: u32) -> Vec<((f64, f64), f64)> {
+    let place = |i: u32, by: f64| 2.0 + 6.0 * (f64::from(i) * by).fract();
+    (0..count).map(|i| ((place(i, 0.618_034), place(i, 0.414_214)), 0.7)).collect()
+}
+
+#[test]
+fn a_thousand_overlapping_circles_are_what_each_of_them_is() {
+    let circles = heap(1000);
+    let shape = |&(center, radius): &((f64, f64), f64)| Shape::Circle { center, radius };
+    let shapes: Vec<Shape> = circles.iter().map(shape).collect();
+    let world = world(10.0, 10.0, &shapes, Surface::Rough);
+    // A circle of 64 sides lies between those of these radii.
+    let inner = 0.7 * libm::cos(std::f64::consts::PI / 64.0);
+    let nearest = |x: f64, y: f64| {
+        let distance = |((u, v), _): &((f64, f64), f64)| libm::hypot(x - u, y - v);
+        circles.iter().map(distance).fold(f64::INFINITY, f64::min)
+    };
+    for i in 0..4000 {
+        let at = |by: f64| 10.0 * (f64::from(i) * by).fract();
+        let (x, y) = (at(0.732_051), at(0.236_068));
+        let (solid, nearest) = (world.is_solid(Point2::new(x, y)), nearest(x, y));
+        assert!(solid || nearest > inner - 1e-9, "({x}, {y}) is free");
+        assert!(!solid || nearest < 0.7 + 1e-9, "({x}, {y}) is solid");
+        if !solid {
+            let border = x.min(y).min(10.0 - x).min(10.0 - y);
+            let clearance = world.clearance(Point2::new(x, y));
+            let bounds = [nearest - 0.7, nearest - inner].map(|c| c.min(border));
+            assert!(bounds[0] - 1e-9 <= clearance && clearance <= bounds[1] + 1e-9);
         }
     }
 }
