@@ -61,7 +61,7 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     for (training, test) in [(&a, &b), (&b, &a)] {
         directions.push(direction(&file, &config, (training, test), &interrupt, &mut progress)?);
         // What was cut short is no comparison.
-        if interrupt.is_pressed() {
+        if interrupt.done() {
             return Ok(ExitCode::from(interrupt::EXIT_CODE));
         }
     }

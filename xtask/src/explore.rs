@@ -37,6 +37,7 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
     let mut trace = TraceWriter::create(&folder.path("trace.jsonl"))?;
     let begun = Instant::now();
     let run = watch(&task, &mut trace, &mut progress, &interrupt)?;
+    interrupt.done();
     let seconds = begun.elapsed().as_secs_f64();
     let hash = trace.finish(&run.map)?;
     progress.say("drawing and scoring the map …");

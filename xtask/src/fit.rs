@@ -61,10 +61,11 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
         examples(sources, &arguments.file, (&config, &name), (&progress, &interrupt))
     };
     let (training, held_out) = (examples(&file.training)?, examples(&file.held_out)?);
-    if interrupt.is_pressed() {
+    if interrupt.done() {
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     }
     let fitted = search(&file, &config, &training, &mut progress, &interrupt)?;
+    let stopped = interrupt.done();
     progress.finish();
 
     let compare = |name: &str, examples: &[Example]| -> Result<Compared> {
@@ -91,7 +92,7 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     if !arguments.quiet {
         tell(&report, &written);
     }
-    Ok(if interrupt.is_pressed() { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
+    Ok(if stopped { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
 }
 
 pub(crate) fn search(

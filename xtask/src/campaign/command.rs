@@ -36,7 +36,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     });
     bar.finish();
     let records = records?;
-    if interrupt.is_pressed() {
+    if interrupt.done() {
         let (done, name) = (records.len(), &campaign.name);
         say::note(format!(
             "interrupted; {done} runs of {name} are recorded, and begun again it goes on"

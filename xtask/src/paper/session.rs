@@ -101,7 +101,7 @@ impl<'a> Session<'a> {
 
     /// An error after Ctrl-C: what is done stays, and is taken the next time.
     pub(crate) fn check(&self) -> Result<()> {
-        if self.interrupt.is_pressed() {
+        if self.interrupt.done() {
             bail!("interrupted; what is done stays, and the same command goes on with it");
         }
         Ok(())
