@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod architecture;
+mod decisions;
 mod shipped_files;
 mod turned_buildings;
 

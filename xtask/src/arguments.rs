@@ -3,6 +3,7 @@
 mod bench;
 mod experiments;
 mod files;
+mod memory;
 mod values;
 
 pub(crate) use bench::{Bench, Rows};
@@ -184,6 +185,8 @@ Example:
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+    #[command(flatten)]
+    pub(crate) memory: memory::Memory,
 }
 
 #[derive(Debug, Subcommand)]

@@ -1,5 +1,6 @@
 //! Worlds and configurations from files.
 
+use crate::memory;
 use anyhow::{Result, anyhow, bail};
 use covmap::{Grid, Raster};
 use covmap_explore::{Config, ConfigError, Limits, Mission, MissionError};
@@ -22,8 +23,6 @@ const FOLDER_CONFIG: &str = include_str!("../../configs/sonar8.ron");
 const FOLDER_CONFIG_NAME: &str = "configs/sonar8.ron";
 /// A beam, or the robot, may be so many cells long: beyond, tables of them fill the memory.
 const MOST_CELLS_ALONG: f64 = 1500.0;
-/// A belief may have so many numbers: 2·10⁷ cells of 11 bins.
-const MOST_NUMBERS: usize = covmap::MAX_CELLS * 11;
 
 /// An error about a file, in one sentence that names it.
 pub(crate) fn about<E: Display>(path: &Path) -> impl Fn(E) -> anyhow::Error {
@@ -110,30 +109,17 @@ pub(crate) fn check(config: &Config, name: &Path) -> Result<SensorModel> {
             );
         }
     }
-    check_planner(config, &model).map_err(about(name))?;
+    // The planner checks its parameters when it is made: make one for a single cell.
+    let grid = Grid::new(Point2::origin(), config.resolution, 1, 1).map_err(about(name))?;
+    memory::check_run(&grid, config, 1).map_err(about(name))?;
+    check_planner(config, &model, grid).map_err(about(name))?;
     Ok(model)
 }
 
-/// The planner checks its parameters when it is made: make one for a single cell.
-fn check_planner(config: &Config, model: &SensorModel) -> Result<(), ConfigError> {
-    let grid = Grid::new(Point2::origin(), config.resolution, 1, 1)?;
+fn check_planner(config: &Config, model: &SensorModel, grid: Grid) -> Result<(), ConfigError> {
     let outside = Raster::filled(grid, false);
     let planner = Planner::new(&config.planner, model, &outside, config.robot.radius, 0.0);
     planner.map(|_| ()).map_err(|error: PlannerError| error.into())
-}
-
-/// Checks that a belief fits into the memory.
-pub(crate) fn check_size(grid: &Grid, config: &Config) -> Result<()> {
-    if grid.len().saturating_mul(config.model.bins) > MOST_NUMBERS {
-        bail!(
-            "a map of {} × {} cells with {} bins each is too large; use a coarser resolution or \
-             fewer bins",
-            grid.width(),
-            grid.height(),
-            config.model.bins
-        );
-    }
-    Ok(())
 }
 
 /// The mission to explore the world in a file.
@@ -145,7 +131,7 @@ pub(crate) fn mission(
 ) -> Result<Mission> {
     check(config, name)?;
     let grid = world.grid(config.resolution).map_err(about(file))?;
-    check_size(&grid, config).map_err(about(file))?;
+    memory::check_run(&grid, config, 1).map_err(about(file))?;
     Mission::new(world, config, start, limits).map_err(|error| match error {
         MissionError::Config(error) => about(name)(error),
         error => about(file)(error),

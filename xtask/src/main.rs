@@ -23,6 +23,7 @@ mod log;
 mod map;
 mod map_pictures;
 mod mapper;
+mod memory;
 mod model;
 mod output;
 mod paper;
@@ -50,11 +51,12 @@ const BAD_INPUT: u8 = 2;
 const CLOSED_PIPE: u8 = 141;
 
 fn main() -> ExitCode {
-    let arguments = match Arguments::try_parse() {
+    let Arguments { command, memory } = match Arguments::try_parse() {
         Ok(arguments) => arguments,
         Err(told) => return ended(say::clap(told)),
     };
-    let done = match arguments.command {
+    memory::allow(memory.memory);
+    let done = match command {
         Command::Explore(arguments) => explore::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Map(arguments) => map::run(&arguments),

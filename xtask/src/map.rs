@@ -6,7 +6,7 @@ use crate::interrupt::{self, Interrupt};
 use crate::map_pictures::MapPictures;
 use crate::mapper::{Log, Mapper, Stride, Survey};
 use crate::progress::Progress;
-use crate::{input, output, results, say};
+use crate::{input, memory, output, results, say};
 use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_explore::Config;
@@ -64,9 +64,10 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     let Some(survey) = log.survey(&mut progress, &interrupt)? else {
         return Ok(interrupt::EXIT_CODE.into());
     };
+    interrupt.done();
     let (model, remark) = model(&config, arguments.sensor, &survey.ring)?;
     let grid = survey.grid(&model, config.robot.radius, &log.path)?;
-    input::check_size(&grid, &config).map_err(about(&log.path))?;
+    memory::check_map(&grid, &config).map_err(about(&log.path))?;
     let body =
         (config.planner.body_evidence == BodyEvidence::Belief).then_some(config.robot.radius);
     let stride = Stride { every: arguments.every, turn: arguments.every_degrees.to_radians() };
@@ -76,6 +77,7 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     let folder = output::folder(&folder_name(arguments)?, &run, arguments.force, &inputs)?;
     let mapper = Mapper::new(grid, model, stride, body)?;
     let mapper = log.map(&survey, mapper, &mut progress, &interrupt)?;
+    interrupt.done();
     progress.say("drawing the map …");
     let seconds = begun.elapsed().as_secs_f64();
     let summary = summary(arguments, &survey, &mapper, seconds);

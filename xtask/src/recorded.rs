@@ -1,8 +1,9 @@
 //! What a robot recorded: laser scans for a survey, and examples for a fit.
 
 use crate::fit_file::beside;
-use crate::input::{self, about};
+use crate::input::about;
 use crate::mapper::{Stride, grid_around};
+use crate::memory;
 use anyhow::{Result, bail};
 use covmap::{CoverageMap, Raster};
 use covmap_explore::Config;
@@ -89,7 +90,7 @@ impl Recorded {
             places.clone().fold((first, first), |(low, high), at| (low.inf(&at), high.sup(&at)));
         let grid = grid_around(low - around, high + around, config.resolution, 0);
         let grid = grid.map_err(about(&log))?;
-        input::check_size(&grid, config).map_err(about(&log))?;
+        memory::check_map(&grid, config).map_err(about(&log))?;
 
         let survey: Survey = read_ron(&truth)?;
         let coverage = survey.coverage(&grid).map_err(about(&truth))?;

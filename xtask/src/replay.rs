@@ -1,7 +1,7 @@
 //! A run is repeated from its trace, up to one decision.
 
-use crate::input;
 use crate::trace_file::Trace;
+use crate::{input, memory};
 use anyhow::{Result, anyhow, bail};
 use covmap::{Cell, CoverageMap};
 use covmap_explore::{Event, Mission, RecordedRobot, TraceHeader, View, explore};
@@ -31,7 +31,7 @@ pub(crate) fn replay(trace: &Trace, path: &Path) -> Result<Moment> {
     let (ring, _) = header.config.build()?;
     let beams = ring.beams().len();
     check_scans(&trace.events, beams).map_err(input::about(path))?;
-    let mission = header.mission();
+    let mission = header.mission().map_err(input::about(path))?;
     let mut robot = RecordedRobot::new(trace.events.iter().cloned(), beams);
     let mut recorded = trace.events.iter().enumerate();
     let mut differs = None;
@@ -77,24 +77,10 @@ fn look(mission: &Mission, from: Cell, decision: &Decision, view: &View<'_>) -> 
 
 /// Checks a header that anybody may have written.
 fn check(header: &TraceHeader) -> Result<()> {
-    let TraceHeader { config, grid, inside, start, .. } = header;
+    let TraceHeader { config, grid, .. } = header;
     input::check(config, Path::new("config"))?;
-    input::check_size(grid, config)?;
-    if (grid.resolution() - config.resolution).abs() > 1e-12 {
-        bail!("the grid and the configuration have different resolutions");
-    }
-    let pose = start.translation.vector;
-    if grid.cell_at(pose.into()).is_none() || !start.rotation.angle().is_finite() {
-        bail!("the start ({}, {}) is not in the grid", pose.x, pose.y);
-    }
-    let mut end = 0;
-    for (i, &(first, next)) in inside.iter().enumerate() {
-        if first < end || next <= first || next > grid.len() {
-            bail!("inside[{i}]: ({first}, {next}) is no run of cells after {end} in the grid");
-        }
-        end = next;
-    }
-    Ok(())
+    // The planner is looked at as it was, and goes on.
+    memory::check_run(grid, config, 2)
 }
 
 fn check_scans(events: &[Event], beams: usize) -> Result<()> {

@@ -29,6 +29,7 @@
 
 mod config;
 mod cut_off;
+mod memory;
 mod mission;
 mod overridden;
 mod robot;
@@ -41,6 +42,7 @@ mod trace;
 
 pub use config::{Config, ConfigError, RobotParameters};
 pub use cut_off::CutOff;
+pub use memory::run_bytes;
 pub use mission::{Limits, Mission, MissionError};
 pub use overridden::OverrideError;
 pub use robot::{RecordedRobot, Robot, SimulatedRobot};

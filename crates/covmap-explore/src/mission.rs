@@ -1,7 +1,7 @@
 //! What is to be explored, and from where.
 
 use crate::{Config, ConfigError};
-use covmap::{Grid, Raster};
+use covmap::{Grid, Raster, short};
 use covmap_world::World;
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
@@ -16,6 +16,22 @@ pub struct Limits {
     pub max_scans: Option<usize>,
 }
 
+impl Limits {
+    /// Checks the limits: with others a run would not begin, or not end.
+    ///
+    /// # Errors
+    /// If one is out of its interval.
+    pub fn validate(&self) -> Result<(), MissionError> {
+        if let Some(step) = self.while_driving.filter(|step| !(0.01..=1e6).contains(step)) {
+            return Err(MissionError::WhileDriving(step));
+        }
+        if self.max_scans == Some(0) {
+            return Err(MissionError::MaxScans);
+        }
+        Ok(())
+    }
+}
+
 /// Why a mission cannot be begun.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MissionError {
@@ -23,11 +39,13 @@ pub enum MissionError {
     #[error(transparent)]
     Config(#[from] ConfigError),
     /// The start pose is not finite or not in the extent.
-    #[error("the start ({0}, {1}) lies outside of the world")]
+    #[error("the start ({}, {}) lies outside of the world", short(.0), short(.1))]
     StartOutside(f64, f64),
     /// Something is where the robot should start.
     #[error(
-        "the robot of radius {radius} m cannot stand at the start ({x}, {y}): the next obstacle is {clearance:.3} m from there"
+        "the robot of radius {radius} m cannot stand at the start ({}, {}): the next obstacle is {clearance:.3} m from there",
+        short(x),
+        short(y)
     )]
     StartOccupied {
         /// Start.
@@ -43,8 +61,30 @@ pub enum MissionError {
     #[error("a robot of radius {0} m fits nowhere in this world")]
     NoStart(f64),
     /// The distance between scans while driving is impossible.
-    #[error("measuring while driving every {0} m: it must be at least 0.01 m")]
+    #[error("measuring while driving every {} m: it must be at least 0.01 m, at most 1e6 m", short(.0))]
     WhileDriving(f64),
+    /// No scan is allowed.
+    #[error("max_scans is 0: a run needs at least one scan; leave it out for no limit")]
+    MaxScans,
+    /// The grids of a mission differ.
+    #[error("the grid, and the cells that are outside, are not of the configuration's resolution of {} m", short(.0))]
+    Grids(f64),
+    /// What is inside is no list of runs of cells.
+    #[error(
+        "inside[{number}]: ({first}, {next}) is no run of cells after {end} in a grid of {cells}"
+    )]
+    Inside {
+        /// Which run.
+        number: usize,
+        /// Its first cell.
+        first: usize,
+        /// The first cell past it.
+        next: usize,
+        /// The first cell past the one before.
+        end: usize,
+        /// How many cells the grid has.
+        cells: usize,
+    },
 }
 
 /// The environment's extent on its grid, the start, and the configuration: all that the
@@ -76,9 +116,7 @@ impl Mission {
         limits: Limits,
     ) -> Result<Self, MissionError> {
         config.build()?;
-        if let Some(step) = limits.while_driving.filter(|step| !(0.01..=1e6).contains(step)) {
-            return Err(MissionError::WhileDriving(step));
-        }
+        limits.validate()?;
         let grid = world.grid(config.resolution).map_err(ConfigError::from)?;
         let radius = config.robot.radius;
         let start = match start.or_else(|| world.given_start()) {
@@ -98,6 +136,25 @@ impl Mission {
         }
         let outside = Raster::from_fn(grid, |cell| !extent.holds(grid.center(cell)));
         Ok(Self { config: config.clone(), grid, outside, start, limits })
+    }
+
+    /// Checks what must hold of a mission that anybody may have put together, but for its
+    /// configuration ([`Config::build`]): whoever explores asks for it.
+    ///
+    /// # Errors
+    /// If a limit is impossible, the grids do not fit, or the start is not in the grid.
+    pub fn validate(&self) -> Result<(), MissionError> {
+        self.limits.validate()?;
+        let resolution = self.config.resolution;
+        let fits = (self.grid.resolution() - resolution).abs() <= 1e-12;
+        if !fits || *self.outside.grid() != self.grid {
+            return Err(MissionError::Grids(resolution));
+        }
+        let at = Point2::from(self.start.translation.vector);
+        if self.grid.cell_at(at).is_none() || !self.start.rotation.angle().is_finite() {
+            return Err(MissionError::StartOutside(at.x, at.y));
+        }
+        Ok(())
     }
 }
 

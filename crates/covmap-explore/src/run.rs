@@ -80,7 +80,7 @@ pub struct View<'a> {
 /// senses.
 ///
 /// # Errors
-/// If the mission's configuration is invalid.
+/// If the mission's configuration is invalid, or [`Mission::validate`] finds something.
 pub fn explore<R: Robot>(
     mission: &Mission,
     robot: &mut R,
@@ -123,6 +123,7 @@ struct Explorer<'a, R, H> {
 
 impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, R, H> {
     fn new(mission: &'a Mission, robot: &'a mut R, hook: &'a mut H) -> Result<Self, MissionError> {
+        mission.validate()?;
         let Mission { config, grid, outside, start, .. } = mission;
         let (_, model) = config.build()?;
         let planner = Planner::new(

@@ -1,7 +1,7 @@
 //! The trace of a run: every scan and every decision.
 
-use crate::{Config, Ending, Limits};
-use covmap::{Cell, Grid};
+use crate::{Config, Ending, Limits, Mission, MissionError};
+use covmap::{Cell, Grid, Raster};
 use covmap_plan::Decision;
 use covmap_sonar::Scan;
 use nalgebra::{Isometry2, Point2};
@@ -37,7 +37,7 @@ pub struct TraceHeader {
 
 impl TraceHeader {
     /// The header of a mission in the world called `world`.
-    pub fn new(mission: &crate::Mission, world: &str, seed: u64) -> Self {
+    pub fn new(mission: &Mission, world: &str, seed: u64) -> Self {
         let outside = mission.outside.values();
         let mut inside: Vec<(usize, usize)> = Vec::new();
         for index in (0..outside.len()).filter(|i| !outside[*i]) {
@@ -58,15 +58,25 @@ impl TraceHeader {
         }
     }
 
-    /// The mission that the header describes.
-    pub fn mission(&self) -> crate::Mission {
-        let mut outside = covmap::Raster::filled(self.grid, true);
-        for &(first, end) in &self.inside {
-            let end = end.min(self.grid.len());
-            outside.values_mut()[first.min(end)..end].fill(false);
+    /// The mission that the header describes. Anybody may have written it.
+    ///
+    /// # Errors
+    /// If [`Mission::validate`] finds something, or what is inside is no list of runs of cells in
+    /// order.
+    pub fn mission(&self) -> Result<Mission, MissionError> {
+        let mut outside = Raster::filled(self.grid, true);
+        let (mut end, cells) = (0, self.grid.len());
+        for (number, &(first, next)) in self.inside.iter().enumerate() {
+            if first < end || next <= first || next > cells {
+                return Err(MissionError::Inside { number, first, next, end, cells });
+            }
+            outside.values_mut()[first..next].fill(false);
+            end = next;
         }
         let Self { config, grid, start, limits, .. } = self.clone();
-        crate::Mission { config, grid, outside, start, limits }
+        let mission = Mission { config, grid, outside, start, limits };
+        mission.validate()?;
+        Ok(mission)
     }
 }
 

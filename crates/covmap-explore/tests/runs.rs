@@ -3,7 +3,7 @@
 
 use covmap_explore::{
     Accuracy, Config, Ending, Event, Limits, Mission, RecordedRobot, Run, SimulatedRobot,
-    TraceHasher, Truth, explore,
+    TraceHasher, TraceHeader, Truth, explore,
 };
 use covmap_plan::{CellStatus, Strategy};
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
@@ -201,4 +201,38 @@ fn maps_of_different_runs_are_compared_over_the_same_cells_and_the_body_pins_non
     }
     assert_eq!(compared[0], compared[1]);
     assert_ne!(scored[0], scored[1], "what a run could see differs");
+}
+
+#[test]
+fn a_mission_that_anybody_put_together_is_checked() {
+    let (world, config) = (world(vec![]), config(Strategy::Cl));
+    let good = Mission::new(&world, &config, None, Limits::default()).unwrap();
+    let header = TraceHeader::new(&good, "room", 1);
+    assert_eq!(header.mission(), Ok(good.clone()));
+    let refuse = |mission: Mission, expected: &str| {
+        let header = TraceHeader::new(&mission, "room", 1);
+        let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
+        let explored = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(()));
+        for error in [header.mission().unwrap_err(), explored.unwrap_err()] {
+            assert!(error.to_string().contains(expected), "{error}");
+        }
+    };
+    for step in [0.0, -1.0, 1e-12, f64::NAN, f64::INFINITY, 1e300] {
+        let limits = Limits { while_driving: Some(step), max_scans: None };
+        refuse(Mission { limits, ..good.clone() }, "measuring while driving every");
+        assert!(Mission::new(&world, &config, None, limits).is_err(), "{step}");
+    }
+    let limits = Limits { while_driving: None, max_scans: Some(0) };
+    refuse(Mission { limits, ..good.clone() }, "max_scans is 0");
+    let mut far = good.clone();
+    far.start.translation.vector.x = 1e300;
+    refuse(far, "the start (1e300, ");
+    let mut coarse = good.clone();
+    coarse.config.resolution = 0.3;
+    refuse(coarse, "resolution of 0.3 m");
+    for inside in [(5, 5), (0, 1_000_000), (9, 3)] {
+        let header = TraceHeader { inside: vec![(0, 1), inside], ..header.clone() };
+        let error = header.mission().unwrap_err().to_string();
+        assert!(error.starts_with("inside[1]: ("), "{error}");
+    }
 }

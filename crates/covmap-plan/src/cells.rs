@@ -1,6 +1,7 @@
 //! What the planner keeps of the map, laid out for the beams of many view-points.
 
 use crate::gain::evidence::Prior;
+use crate::memory::Size;
 use crate::view_points::{groups, place};
 use crate::{PlannerParameters, Stencil};
 use covmap::lanes::{LANES, Lanes};
@@ -83,6 +84,15 @@ impl Cells {
             });
         }
         cells
+    }
+
+    /// About how many bytes this takes.
+    pub(crate) fn bytes(size: &Size) -> f64 {
+        // Codes, limits, reflections, and how many reflect.
+        const BORDERED: f64 = 1.0 + 4.0 + 8.0 + 1.0;
+        // Of a block entropies, whether it is changeable, and h and ĥ of every bin.
+        let lanes = 64.0 * (2.0 + 2.0 * size.bins);
+        BORDERED * size.bordered() + (lanes + 9.0) * size.blocks()
     }
 
     /// The place of a cell in the bordered rasters, by its row-major index.

@@ -26,6 +26,9 @@ pub enum Reach {
 impl Planner {
     /// What became of every cell, for a robot in the cell `from`: explored means that none
     /// is [`CellStatus::Open`].
+    ///
+    /// # Panics
+    /// If the robot's cell lies outside of the grid.
     pub fn certificate(&mut self, map: &CoverageMap, from: Cell) -> Raster<CellStatus> {
         let mut in_sight = vec![InSight::Nowhere; self.grid.len()];
         let candidates = self.candidates(from);

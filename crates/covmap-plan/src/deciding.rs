@@ -1,4 +1,8 @@
 //! Which gains decide: all candidates are bounded, and those evaluated that may be the best.
+//!
+//! The bounds are found on probes and not proven ([`crate::gain::bound`]). Where a gain that is
+//! evaluated is above its bound, all candidates are evaluated; a candidate that was passed over
+//! because its bound is too low, while all that were evaluated keep theirs, stays passed over.
 
 use crate::decision::{REPORTED, Score};
 use crate::view_points::ViewPoints;
@@ -15,6 +19,7 @@ impl Planner {
     pub(crate) fn fill_deciding_gains(&mut self, records: &mut [CandidateRecord]) {
         let all = self.view_points(records);
         self.beams.refresh_bound(&mut self.cells, &all);
+        self.beams.take_exceeded();
         let largest = |records: &[CandidateRecord]| {
             GAIN_TOLERANCE * records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max)
         };
@@ -25,6 +30,10 @@ impl Planner {
         }
         let off = |records: &[CandidateRecord]| score.uncertainty(records, GAIN_TOLERANCE);
         self.settle(records, &all, REPORTED, |record| record.score, off);
+        if self.beams.take_exceeded() {
+            self.beams.refresh_gain(&mut self.cells, &all);
+            self.take_gains(records);
+        }
     }
 
     /// Evaluates until no bound is among the `count` largest by a `key`, nor closer to them than

@@ -1,6 +1,7 @@
 //! The parameters of planning.
 
 use crate::{Strategy, StrategyError};
+use covmap::short;
 use serde::{Deserialize, Serialize};
 
 /// When a cell is given up whose entropy does not fall any longer.
@@ -85,7 +86,7 @@ pub struct PlannerParameters {
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlannerError {
     /// A parameter is not in its interval.
-    #[error("planner.{name}: {value} must lie in [{min}, {max}]")]
+    #[error("planner.{name}: {} must lie in [{min}, {max}]", short(value))]
     OutOfRange {
         /// The parameter.
         name: &'static str,
@@ -112,6 +113,14 @@ pub enum PlannerError {
     Strategy(#[from] StrategyError),
 }
 
+impl PlannerError {
+    /// Checks that a number lies in an interval; what is no number does not.
+    pub(crate) fn within(name: &'static str, value: f64, min: f64, max: f64) -> Result<(), Self> {
+        let good = (min..=max).contains(&value);
+        good.then_some(()).ok_or(Self::OutOfRange { name, value, min, max })
+    }
+}
+
 impl PlannerParameters {
     /// The defaults: ε = .6, .001, five; walls are targets; IG_CL(.3).
     pub fn standard() -> Self {
@@ -134,10 +143,7 @@ impl PlannerParameters {
 
     /// Checks every parameter.
     pub(crate) fn validate(&self) -> Result<(), PlannerError> {
-        let within = |name, value: f64, min, max| {
-            let good = (min..=max).contains(&value);
-            good.then_some(()).ok_or(PlannerError::OutOfRange { name, value, min, max })
-        };
+        let within = PlannerError::within;
         self.strategy.validate()?;
         within("entropy_threshold", self.entropy_threshold, 0.0, 5.0)?;
         within("min_entropy_change", self.min_entropy_change, 1e-6, 1.0)?;

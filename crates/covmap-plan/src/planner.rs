@@ -26,6 +26,9 @@ pub const GAIN_TOLERANCE: f64 = 1e-5;
 
 /// Chooses view-points by the strategies of section 4, and knows when all is explored.
 ///
+/// All maps that it is given must be on the grid of `outside` in [`Planner::new`], and all scans
+/// must have one reading for each beam: it panics if they do not fit.
+///
 /// Tell it of everything that happens ([`observe`], [`body_moved`], [`stand_on`],
 /// [`bump_at`]), then ask it to [`choose`].
 ///
@@ -67,7 +70,7 @@ impl Planner {
     /// \[rad\].
     ///
     /// # Errors
-    /// If a parameter is out of its interval.
+    /// If a parameter is out of its interval, or the radius or the heading is.
     pub fn new(
         parameters: &PlannerParameters,
         model: &SensorModel,
@@ -76,6 +79,8 @@ impl Planner {
         heading: f64,
     ) -> Result<Self, PlannerError> {
         parameters.validate()?;
+        PlannerError::within("radius", radius, 0.0, 1e3)?;
+        PlannerError::within("heading", heading, -1e9, 1e9)?;
         let reach = model.max_reach() / model.resolution();
         if reach > FARTHEST {
             return Err(PlannerError::BeamTooLong(reach));
@@ -296,6 +301,9 @@ impl Planner {
 
     /// Every candidate for a robot in the cell `from`, with gains and scores, in row-major
     /// order: what the next decision is made from. For IG_WIN those of the whole map.
+    ///
+    /// # Panics
+    /// If the robot's cell lies outside of the grid.
     pub fn candidate_table(&mut self, from: Cell) -> Vec<CandidateRecord> {
         let mut candidates = self.candidates(from);
         if candidates.indices.is_empty() {
@@ -317,6 +325,9 @@ impl Planner {
 
     /// Chooses the next view-point for a robot in the cell `from`; `None` if there is no
     /// candidate: nothing is open, and no passage is left to try.
+    ///
+    /// # Panics
+    /// If the robot's cell lies outside of the grid.
     pub fn choose(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
         // On a thread of the pool, what shares its work out need not wait for other threads.
         rayon::scope(|_| self.choose_here(map, from))

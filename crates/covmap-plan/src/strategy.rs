@@ -1,5 +1,6 @@
 //! The strategies of section 4, by name.
 
+use covmap::short;
 use covmap_model::Counting;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -59,22 +60,23 @@ impl Strategy {
         }
     }
 
-    /// Checks the numbers.
+    /// Checks the numbers: with larger ones a run would not end, or its choice would not depend on
+    /// them any longer.
     ///
     /// # Errors
-    /// If a number is not finite or out of its range.
+    /// If a number is out of its range.
     pub fn validate(&self) -> Result<(), StrategyError> {
-        let number = |name: &'static str, value: f64, min: f64| {
-            let good = value.is_finite() && value >= min;
-            good.then_some(()).ok_or(StrategyError::Number { name, value, min })
+        let number = |name: &'static str, value: f64, min: f64, max: f64| {
+            let good = (min..=max).contains(&value);
+            good.then_some(()).ok_or(StrategyError::Number { name, value, min, max })
         };
         match *self {
             Strategy::Cl | Strategy::Ig => Ok(()),
-            Strategy::IgWin { radius } => number("the radius of IG_WIN", radius, 0.1),
-            Strategy::IgCl { alpha } => number("the weight α of IG_CL", alpha, 0.0),
+            Strategy::IgWin { radius } => number("the radius of IG_WIN", radius, 0.1, 1e4),
+            Strategy::IgCl { alpha } => number("the weight α of IG_CL", alpha, 0.0, 1e6),
             Strategy::Count { times, half_distance } => {
-                number("the count of COUNT", times, 1e-3)?;
-                number("the half distance of COUNT", half_distance.unwrap_or(1.0), 1e-3)
+                number("the count of COUNT", times, 1e-3, 1e4)?;
+                number("the half distance of COUNT", half_distance.unwrap_or(1.0), 0.1, 1e3)
             }
         }
     }
@@ -89,7 +91,7 @@ pub enum StrategyError {
     )]
     Unknown(String),
     /// A number out of range.
-    #[error("{name} is {value}; it must be a finite number of at least {min}")]
+    #[error("{name} is {}; it must lie in [{min}, {max}]", short(value))]
     Number {
         /// Which.
         name: &'static str,
@@ -97,6 +99,8 @@ pub enum StrategyError {
         value: f64,
         /// The smallest allowed.
         min: f64,
+        /// The largest allowed.
+        max: f64,
     },
 }
 
@@ -169,6 +173,12 @@ mod tests {
             "IG_CL:-1",
             "IG_WIN:0",
             "COUNT:nan",
+            "COUNT:1e308",
+            "COUNT:10001",
+            "COUNT:5:1e-12",
+            "COUNT:5:inf",
+            "IG_CL:1e300",
+            "IG_WIN:1e300",
             "COUNT:1:2:3",
         ] {
             assert!(text.parse::<Strategy>().is_err(), "{text}");

@@ -30,10 +30,10 @@ pub fn travel_costs(steps: Steps, source: Cell) -> TravelCosts {
 }
 
 impl TravelCosts {
-    /// d_c of the cell with a row-major index \[m\]; `None` if it cannot be reached. Equal
-    /// lengths are equal to the last bit, however they came about.
+    /// d_c of the cell with a row-major index \[m\]; `None` if it cannot be reached, or
+    /// is not in the grid. Equal lengths are equal to the last bit, however they came about.
     pub fn cost(&self, index: usize) -> Option<f64> {
-        in_cells(self.labels[index]).map(|length| length * self.steps.grid().resolution())
+        in_cells(*self.labels.get(index)?).map(|length| length * self.steps.grid().resolution())
     }
 
     /// All cells that can be reached, by their row-major index, in ascending order.

@@ -377,3 +377,37 @@ fn beams_of_too_many_cells_are_refused() {
     assert!(matches!(planner(0.001), PlannerError::BeamTooLong(cells) if cells > 3000.0));
     assert!(matches!(planner(0.0035), PlannerError::BeamTooFine(cells) if cells > 65_534));
 }
+
+#[test]
+fn absurd_arguments_are_answered() {
+    let Setting { model, parameters, map, .. } = setting(Strategy::Cl, 11, |_| ());
+    let outside = Raster::filled(*map.grid(), false);
+    for (radius, heading) in [
+        (f64::NAN, 0.0),
+        (-1.0, 0.0),
+        (f64::INFINITY, 0.0),
+        (1e300, 0.0),
+        (0.27, f64::NAN),
+        (0.27, f64::INFINITY),
+        (0.27, 1e300),
+    ] {
+        let refused = Planner::new(&parameters, &model, &outside, radius, heading);
+        assert!(matches!(refused, Err(PlannerError::OutOfRange { .. })), "{radius}, {heading}");
+    }
+    let far = Cell::new(i32::MAX, i32::MIN);
+    let stencil = Stencil::new(&model, 0.0);
+    assert_eq!(expected_information_gain(&map, &model, &stencil, &parameters, far), 0.0);
+    let grid = *map.grid();
+    let steps = covmap::Steps::between(&grid, |_| true);
+    let costs = covmap_plan::travel_costs(steps, Cell::new(0, 0));
+    assert!(costs.cost(grid.len() - 1).is_some());
+    assert_eq!((costs.cost(grid.len()), costs.cost(usize::MAX)), (None, None));
+    assert_eq!(costs.path_to(far), None);
+}
+
+#[test]
+#[should_panic(expected = "outside the grid")]
+fn a_planner_does_not_choose_from_outside_of_its_grid() {
+    let Setting { map, mut planner, .. } = setting(Strategy::Cl, 11, |_| ());
+    planner.choose(&map, Cell::new(-1, 0));
+}

@@ -6,6 +6,7 @@ use super::folder::{Manifest, Planned};
 use super::record::RunKey;
 use super::version::VERSION;
 use crate::input::{self, about};
+use crate::memory;
 use anyhow::{Result, anyhow, bail};
 use covmap::Raster;
 use covmap_explore::{Config, Limits, Mission};
@@ -14,6 +15,7 @@ use covmap_plan::Strategy;
 use covmap_world::{Scenario, World};
 use nalgebra::Isometry2;
 use std::collections::BTreeMap;
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -113,6 +115,18 @@ impl Plan {
             job.planned = planned.clone();
         }
         Ok(Self { manifest, cases, jobs, keep_paths: campaign.keep_paths, left_out })
+    }
+
+    /// How many runs fit into the memory together, at least one.
+    pub(crate) fn runs_at_once(&self) -> Result<NonZeroUsize> {
+        let fit = |case: &Case| {
+            let mut config = case.config.clone();
+            // The strategy that takes most.
+            config.planner.strategy = Strategy::Ig;
+            memory::runs_at_once(&case.world.grid(config.resolution)?, &config)
+        };
+        let fits: Vec<usize> = self.cases.iter().map(fit).collect::<Result<_>>()?;
+        Ok(fits.into_iter().min().and_then(NonZeroUsize::new).unwrap_or(NonZeroUsize::MIN))
     }
 
     /// What there is to say of worlds that are left out.

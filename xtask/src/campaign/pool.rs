@@ -55,6 +55,12 @@ pub(crate) fn run(
     tell: &(dyn Fn(&Step) + Sync),
 ) -> Result<Vec<RunRecord>> {
     let plan = Plan::new(campaign)?;
+    let at_once = plan.runs_at_once()?;
+    if at_once < options.jobs {
+        let note =
+            format!("as much memory as --memory allows is enough for {at_once} runs at a time");
+        tell(&Step::Note(note));
+    }
     let folder = Folder::open(options.out, &plan.manifest)?;
     plan.left_out().for_each(|note| tell(&Step::Note(note)));
     let strangers = folder.strangers(&plan.manifest)?;
@@ -74,7 +80,8 @@ pub(crate) fn run(
         tables::remove(options.out)?;
     }
     let jobs: Vec<&Job> = missing.iter().map(|index| &plan.jobs[*index]).collect();
-    work(&plan, &jobs, &folder, options, tell)?;
+    let options = Options { jobs: options.jobs.min(at_once), ..*options };
+    work(&plan, &jobs, &folder, &options, tell)?;
     let done: Vec<&Planned> = missing.iter().map(|index| runs[*index]).collect();
     let done = folder::read_all(options.out, &done, false);
     for (index, done) in missing.into_iter().zip(done) {

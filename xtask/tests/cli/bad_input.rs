@@ -148,3 +148,45 @@ fn wrong_arguments_are_refused() {
     shell.expect("", 2);
     shell.expect("model --range -1 --out m.csv", 2);
 }
+
+#[test]
+fn what_would_take_too_much_memory_is_refused_before_it_does() {
+    let (shell, lab) = (Shell::new(), shipped("scenarios/lab.ron"));
+    let room = |side: &str| {
+        format!("(name: \"room\", extent: (width: {side}, height: {side}), obstacles: [])")
+    };
+    shell.write("plain.ron", room("1000"));
+    let more = |allowed: &str| format!("of memory, more than {allowed}; use a coarser resolution");
+    let parts = &["plain.ron", "4004 × 4004 cells", "GiB", &more("4.0")];
+    shell.refuse("explore plain.ron --resolution 0.25", parts);
+    shell.refuse(&format!("explore {lab} --memory 0.01"), &["24 sensors", &more("0.0")]);
+    let config = std::fs::read_to_string(shipped("configs/b21r.ron")).unwrap();
+    let ring =
+        "ring: Circle(count: 4096, radius: 0.25, half_angle: 0.2, min_range: 0.1, max_range: 10)";
+    let fine = config
+        .replace("ring: B21r", ring)
+        .replace("footprint: Sectors", "footprint: Cones")
+        .replace("resolution: 0.1", "resolution: 0.02");
+    assert!(fine != config);
+    shell.write("fine.ron", fine);
+    shell.refuse(
+        &format!("explore {lab} --config fine.ron"),
+        &["fine.ron", "4096 sensors", &more("4.0")],
+    );
+    shell.refuse(&format!("explore {lab} --memory 0"), &["--memory"]);
+}
+
+#[test]
+fn what_is_wrong_with_a_scenario_is_said_for_its_true_reason() {
+    let bow = "Polygon([(1,1), (1,1), (3,3), (3,1), (1,3)])";
+    let good = "Rectangle(center: (3.0, 2.0), size: (0.5, 0.5), angle: 0.0)";
+    refuse(good, bow, &["obstacle 0", "points 0 and 3 cross or touch near (2.000, 2.000)"]);
+    let line = "Polygon([(1,1), (3,3), (2,2)])";
+    refuse(good, line, &["obstacle 0", "lie on a line"]);
+    refuse("heading: 0.0", "heading: 1e300", &["heading of 1e300 rad must lie within ±1000000"]);
+    refuse("x: 1.0", "x: 1e300", &["the start (1e300, 1) must lie inside the extent"]);
+    refuse("width: 4.0", "width: 1e300", &["the extent of 1e300 × 3 m"]);
+    refuse("(0.5, 0.5)", "(1e300, 0.5)", &["1e300 must be a finite number"]);
+    refuse_config("radius", "radius: 1e300,", &["robot.radius: 1e300 must lie"]);
+    refuse_config("usable_range", "usable_range: 1e300,", &["model.usable_range: 1e300 must"]);
+}

@@ -77,7 +77,13 @@ fn traces_that_lie_are_refused() {
     refuse(&number_after(&good, "\"bins\":", "1000000000"), "model.bins");
     refuse(&number_after(&good, "\"usable_range\":", "1000"), "model");
     refuse(&number_after(&good, "\"translation\":[", "null"), "trace.jsonl:1:");
-    refuse(&number_after(&good, "\"translation\":[", "1e300"), "start");
+    refuse(&number_after(&good, "\"translation\":[", "1e300"), "the start (1e300");
+    for step in ["0", "-1", "1e-12", "1e300"] {
+        let every = format!("measuring while driving every {step} m");
+        refuse(&number_after(&good, "\"while_driving\":", step), &every);
+    }
+    refuse(&number_after(&good, "\"max_scans\":", "0"), "max_scans is 0");
+    refuse(&number_after(&good, "\"alpha\":", "1e308"), "the weight α of IG_CL is 1e308");
     refuse(
         &instead(first_scan, &first_scan.replace("\"ranges\":[", "\"ranges\":[\"NoEcho\",")),
         "25 ranges",

@@ -1,4 +1,4 @@
-//! Upper bounds of E\[I\]: what a decision need not evaluate.
+//! Upper bounds of E\[I\], as far as is probed: what a decision need not evaluate.
 //!
 //! Imagined readings are put into families: in front of the end, by the band of distance of the
 //! cell and that of the end; at the end and behind it, by that of the end; and no echo. For each
@@ -8,14 +8,17 @@
 //!
 //! A potential is the largest gain of a few members of the family, with a margin. Members and
 //! margin are found when the tables are built, on histograms of all kinds, as the nodes of an
-//! interpolation are ([`Probes`]).
+//! interpolation are ([`Probes`]). That is no proof: of a histogram that no probe is like a gain may
+//! be above its bound, and on coarse grids, of few ranges, some are. A decision that meets one
+//! evaluates all of its candidates.
 
 use super::evidence::{Evidence, Prior, Reading, to_f32};
 use super::interpolation::Probes;
 use super::sums::add_product;
 use crate::Stencil;
 use crate::cells::Cells;
-use crate::look_ahead::{Ahead, Cone, Wide, lanes};
+use crate::look_ahead::{Ahead, Cone, Wide, as_f64, lanes};
+use crate::memory::Size;
 use crate::view_points::groups;
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
@@ -81,6 +84,13 @@ impl Potentials {
         Self { grid, families, bands, rasters }
     }
 
+    /// About how many bytes this takes: of the bands in front only those that end farther away
+    /// than the cell have members.
+    pub(crate) fn bytes(size: &Size) -> f64 {
+        const FAMILIES: usize = BANDS * (BANDS + 1) / 2 + BANDS + 1;
+        4.0 * as_f64(FAMILIES) * size.bordered()
+    }
+
     /// Computes the potentials of blocks of cells that changed.
     pub(crate) fn update(&mut self, arch: Arch, cells: &Cells, changed: &[usize]) {
         let (width, per_row) = (self.grid.width(), groups(&self.grid));
@@ -98,7 +108,7 @@ impl Potentials {
         });
     }
 
-    /// An upper bound of a beam's part of E\[I\] from neighbouring view-points.
+    /// An upper bound, as far as is probed, of a beam's part of E\[I\] from neighbouring view-points.
     #[inline(always)]
     pub(crate) fn bound(&self, cone: &Cone, here: usize, ahead: &Ahead) -> Lanes {
         let mut bound = [0.0; LANES];

@@ -10,6 +10,8 @@ use super::basis::Basis;
 use super::rings::{Ring, rings};
 use super::sums::{add_product, mix_outcomes};
 use crate::cells::Cells;
+use crate::look_ahead::as_f64;
+use crate::memory::Size;
 use crate::view_points::groups;
 use crate::{Stencil, StencilCell};
 use covmap::Grid;
@@ -119,6 +121,9 @@ const AT_ONCE: usize = 16;
 /// reports have few units.
 const SHARED: usize = 160;
 
+/// So many readings are kept for every cell, if the estimate of memory is right.
+const BASIS: f64 = 40.0;
+
 /// A room of more numbers than this, 16 MB, is not kept: decisions that need it are slow anyway.
 const KEPT: usize = 1 << 22;
 
@@ -167,6 +172,24 @@ impl Sweep {
             row,
             rooms: [Room::default(), Room::default()],
         }
+    }
+
+    /// About how many bytes this takes, with what its tables need while they are made.
+    pub(crate) fn bytes(size: &Size) -> f64 {
+        // A quarter turn of a ring mostly sees the same distances; each has a reading of its own
+        // for every outcome that ends there: one, and on the border between two the other as well.
+        let own = 2.0 * size.ring / 4.0;
+        let readings = size.ranges * (own + 64.0);
+        // A reading with its evidence, and its gains for all probes.
+        let tables = readings * (32.0 * size.bins + 2500.0);
+        // Weights, factors and asks of a cell of the stencil, by the outcomes that end nearby.
+        let stencil = 500.0 * size.stencil + 100.0 * size.beams * size.ranges;
+        let basis = 64.0 * BASIS * size.blocks();
+        // Two rooms for a portion of rows and its border.
+        let columns = size.width + 2.0 * (size.border + as_f64(LANES));
+        let rows = (size.height + 2.0 * size.border).min(4.0 * size.border + 64.0);
+        let rooms = 2.0 * 4.0 * rows * columns * (own + 32.0);
+        tables + stencil + basis + rooms
     }
 
     /// Around a row so many rows of cells matter.
