@@ -3,7 +3,7 @@
 use crate::explore::in_words;
 use anyhow::Result;
 use covmap::{Cell, CoverageMap, Raster};
-use covmap_explore::{Mission, Run, Summary, Truth};
+use covmap_explore::{Ending, Mission, Run, Summary, Truth};
 use covmap_io::{ColorMap, Key, Marker, Picture, Rgb, coverage_color};
 use covmap_model::{OccupancyGrid, OccupancyParameters};
 use covmap_plan::CellStatus;
@@ -12,6 +12,7 @@ use nalgebra::Point2;
 const PATH_WIDTH: f64 = 2.5;
 const START_SIZE: f64 = 16.0;
 const END_SIZE: f64 = 24.0;
+const CUT_SIZE: f64 = 22.0;
 const BUMP_SIZE: f64 = 7.0;
 /// A cell of which at least this much is covered is a wall.
 const HALF: f64 = 0.5;
@@ -87,6 +88,9 @@ impl Pictures<'_> {
         let start = Point2::from(self.mission.start.translation.vector);
         let end = path.last().copied().unwrap_or(start);
         draw_path(&mut picture, path, start, (end, self.mission.start.rotation.angle()));
+        if self.summary.ending != Ending::Explored {
+            mark_cut_short(&mut picture, end);
+        }
         picture
     }
 
@@ -222,6 +226,13 @@ pub(crate) fn draw_path(
         .key(Key::Line(Rgb::BLUE), "trajectory")
         .key(Key::Marker(disc, Rgb::GREEN), "start")
         .key(Key::Marker(arrow, Rgb::RED), "end");
+}
+
+/// Marks the end of a path that would be longer if the run had explored all.
+pub(crate) fn mark_cut_short(picture: &mut Picture, end: Point2<f64>) {
+    picture
+        .marker(end, Marker::Cross, Rgb::RED, CUT_SIZE)
+        .key(Key::Marker(Marker::Cross, Rgb::RED), "cut short here");
 }
 
 /// The colour of the most likely coverage of each cell. What is not explored well enough

@@ -1,10 +1,12 @@
 //! A line on the terminal that says how far an exploration is.
 
+use crate::campaign::Step;
 use crate::say;
 use covmap_explore::{Mission, View};
 use covmap_io::escaped;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// Looking at the whole map takes time: so long passes between two looks, and so many times
@@ -12,7 +14,8 @@ use std::time::{Duration, Instant};
 const PAUSE: Duration = Duration::from_millis(100);
 const PATIENCE: u32 = 20;
 
-/// Scans, share of cells finished, mean entropy, path and time; nothing where nobody looks.
+/// Scans, path, open cells, mean entropy and time; nothing where nobody looks. No share of what is
+/// done: cells that a scan finds are open, so that it would fall.
 #[derive(Debug)]
 pub(crate) struct Progress {
     line: Option<ProgressBar>,
@@ -34,7 +37,7 @@ impl Progress {
         Self { line, started: Instant::now(), next: Instant::now() }
     }
 
-    /// Shows how far it is, but not too often. The share is of the cells that are known.
+    /// Shows how far it is, but not too often.
     pub(crate) fn show(&mut self, mission: &Mission, view: &View<'_>) {
         let Some(line) = &self.line else { return };
         let now = Instant::now();
@@ -42,11 +45,11 @@ impl Progress {
             return;
         }
         line.set_message(format!(
-            "{} scans · {:.1} % finished · mean entropy {:.3} nats · {:.1} m · {} s",
+            "{} scans · {:.1} m · {} known cells open · mean entropy {:.3} nats · {} s",
             view.scans,
-            100.0 * view.planner.share_finished(view.map),
-            mean_entropy(mission, view),
             view.path_length,
+            view.planner.open_cells(view.map),
+            mean_entropy(mission, view),
             self.started.elapsed().as_secs(),
         ));
         self.next = Instant::now() + PAUSE.max(now.elapsed() * PATIENCE);
@@ -77,44 +80,59 @@ impl Progress {
     }
 }
 
-/// A bar that says how many runs are done, and how much time is left.
+/// A bar that says how many runs of a campaign are done, what they measured, and how much time is
+/// left.
 #[derive(Debug)]
-pub(crate) struct Bar(ProgressBar);
+pub(crate) struct Bar {
+    bar: ProgressBar,
+    /// Scans and metres of all runs since it began.
+    measured: Mutex<(u64, f64)>,
+}
 
 impl Bar {
     /// A bar on the standard error, if that is a terminal and the user wants it.
-    pub(crate) fn new(quiet: bool) -> Self {
+    pub(crate) fn new(campaign: &str, quiet: bool) -> Self {
         let watched = !quiet && std::io::stderr().is_terminal();
         let bar = if watched { ProgressBar::new(0) } else { ProgressBar::hidden() };
-        let style = "{bar:30} {pos} of {len} runs · {elapsed} so far · {eta} left";
+        let style =
+            "{prefix}: {bar:20} {pos} of {len} runs{msg} · {elapsed} so far · some {eta} left";
         if let Ok(style) = ProgressStyle::with_template(style) {
             bar.set_style(style);
         }
+        bar.set_prefix(campaign.to_owned());
         bar.enable_steady_tick(Duration::from_millis(500));
-        Self(bar)
+        Self { bar, measured: Mutex::default() }
     }
 
-    /// So many runs of so many are done before it begins.
-    pub(crate) fn begin(&self, recorded: usize, of: usize) {
-        self.0.set_length(of as u64);
-        self.0.set_position(recorded as u64);
-        // What was done before says nothing of the time that is left.
-        self.0.reset_eta();
+    /// Takes note of what a campaign tells.
+    pub(crate) fn note(&self, step: &Step) {
+        match step {
+            Step::Begin { recorded, of } => {
+                self.bar.set_length(*of as u64);
+                self.bar.set_position(*recorded as u64);
+                // What was done before says nothing of the time that is left.
+                self.bar.reset_eta();
+            }
+            Step::Note(text) => self.bar.suspend(|| say::note(text)),
+            Step::Scan { metres } => self.add_scan(*metres),
+            Step::Done => self.bar.inc(1),
+        }
     }
 
-    /// One more is done.
-    pub(crate) fn done(&self) {
-        self.0.inc(1);
-    }
-
-    /// Prints something to know above the bar.
-    pub(crate) fn note(&self, text: &str) {
-        self.0.suspend(|| say::note(text));
+    fn add_scan(&self, metres: f64) {
+        if self.bar.is_hidden() {
+            return;
+        }
+        if let Ok(mut measured) = self.measured.lock() {
+            let (scans, driven) = (measured.0 + 1, measured.1 + metres);
+            *measured = (scans, driven);
+            self.bar.set_message(format!(" · {scans} scans · {driven:.0} m"));
+        }
     }
 
     /// Clears the bar.
     pub(crate) fn finish(&self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }
 

@@ -31,11 +31,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let run = explore(&mission, &mut robot, &mut |event, view| {
         if let Event::Decision { decision, .. } = event {
             print!(
-                "\r{:>4} scans, {:>5.1} m, {:>3} candidates, {:>5.1} % of the known cells finished",
+                "\r{:>4} scans, {:>5.1} m, {:>3} candidates, {:>4} known cells are open",
                 view.scans,
                 view.path_length,
                 decision.candidates,
-                100.0 * view.planner.share_finished(view.map)
+                view.planner.open_cells(view.map)
             );
             let _ = std::io::stdout().flush();
         }

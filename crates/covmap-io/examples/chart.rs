@@ -1,13 +1,26 @@
-//! Draws the charts of a report: lines with error bars, a logarithmic axis, the profiles of a
-//! fit, and a heat map, each as SVG and PNG.
+//! Draws the charts of a report: lines with error bars, logarithmic axes, panels that share a
+//! legend, and a heat map, each as SVG and PNG.
+//!
+//! What they show is computed here: cells that are covered 20 % are measured again and again, and
+//! every reading is multiplied into a histogram of their coverage.
 //!
 //! ```text
 //! cargo run -p covmap-io --example chart -- DIR
 //! ```
 
+use covmap::{Histogram, bin_coverage, product};
 use covmap_io::{Chart, ChartAxis, ChartPoint, ColorMap, Figure, FileError, HeatMap, Series};
 use std::path::Path;
 use std::process::ExitCode;
+
+/// How much of each cell is covered.
+const COVERAGE: f64 = 0.2;
+const BINS: usize = 11;
+/// Cells of which the mean is drawn, and how often each is measured.
+const CELLS: u64 = 200;
+const READINGS: usize = 60;
+/// Standard deviations of a reading.
+const NOISES: [f64; 4] = [0.1, 0.2, 0.4, 0.8];
 
 fn main() -> ExitCode {
     let Some(dir) = std::env::args().nth(1) else {
@@ -25,143 +38,170 @@ fn main() -> ExitCode {
 
 fn draw(dir: &Path) -> Result<(), FileError> {
     let files = |name: &str| (dir.join(format!("{name}.svg")), dir.join(format!("{name}.png")));
-    let (svg, png) = files("strategies");
-    strategies().save(svg, png)?;
-    let (svg, png) = files("decades");
-    decades().save(svg, png)?;
-    let (svg, png) = files("profiles");
-    profiles().save(svg, png)?;
-    let (svg, png) = files("model");
-    model().save(svg, png)
+    let cells: Vec<Vec<Measured>> = NOISES.map(measured).to_vec();
+    let (svg, png) = files("entropy");
+    entropy(&cells).save(svg, png)?;
+    let (svg, png) = files("error");
+    error(&cells).save(svg, png)?;
+    let (svg, png) = files("posteriors");
+    posteriors(&cells).save(svg, png)?;
+    let (svg, png) = files("one-cell");
+    one_cell(&cells).save(svg, png)
 }
 
-fn series(name: &str, points: Vec<ChartPoint>) -> Series {
-    Series { name: name.into(), points, line: true, marks: true }
-}
+/// What is believed of a cell after 1, 2, … readings.
+type Measured = Vec<Histogram>;
 
-/// The entropy that five strategies leave, with the spread of several runs.
-fn strategies() -> Chart {
-    let names = ["CL", "IG", "IG_WIN(3 m)", "IG_CL(0.3)", "random view-points"];
-    let rates = [41.0, 55.0, 33.0, 27.0, 90.0];
-    let curve = |rate: f64| {
-        let point = |i: i32| {
-            let x = 8.0 * f64::from(i);
-            let y = 100.0 / (1.0 + x / rate) + 4.0 * libm::sin(x / rate);
-            let spread = 2.0 + 0.05 * (100.0 - y);
-            ChartPoint { x, y, low: y - spread, high: y + spread }
+/// Measures all cells with a noise.
+fn measured(noise: f64) -> Vec<Measured> {
+    let cell = |seed: u64| {
+        let mut random = Random(seed);
+        let mut belief = Histogram::uniform(BINS);
+        let measure = |_| {
+            let reading = COVERAGE + noise * random.normal();
+            let likelihood = |bin| {
+                let off = (bin_coverage(bin, BINS) - reading) / noise;
+                // A little for every coverage, so that no reading rules one out.
+                libm::exp(-0.5 * off * off) + 0.01
+            };
+            let evidence: Vec<f64> = (0..BINS).map(likelihood).collect();
+            let mut weights = vec![0.0; BINS];
+            product(belief.probabilities(), &evidence, &mut weights);
+            belief = Histogram::from_weights(&weights).unwrap_or_else(|| belief.clone());
+            belief.clone()
         };
-        (0..=15).map(point).collect()
+        (0..READINGS).map(measure).collect()
+    };
+    (1..=CELLS).map(cell).collect()
+}
+
+/// Numbers that look random, and are the same every time.
+struct Random(u64);
+
+impl Random {
+    /// In [0, 1): a linear congruential generator.
+    fn uniform(&mut self) -> f64 {
+        self.0 =
+            self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        f64::from(u32::try_from(self.0 >> 32).unwrap_or(0)) / 4_294_967_296.0
+    }
+
+    /// Nearly normal: a sum of twelve has the variance 1.
+    fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
+    }
+}
+
+fn series(noise: f64, points: Vec<ChartPoint>) -> Series {
+    Series { name: format!("σ = {noise}"), points, line: true, marks: true }
+}
+
+/// The mean over all cells of a number after so many readings, from the 5th to the 95th percentile.
+fn point(cells: &[Measured], readings: usize, of: impl Fn(&Histogram) -> f64) -> ChartPoint {
+    let mut values: Vec<f64> = cells.iter().map(|cell| of(&cell[readings - 1])).collect();
+    values.sort_by(f64::total_cmp);
+    let mean = values.iter().sum::<f64>() / count(values.len());
+    let at = |share: usize| values[(values.len() - 1) * share / 100];
+    ChartPoint { low: at(5), high: at(95), ..ChartPoint::new(count(readings), mean) }
+}
+
+#[allow(clippy::cast_precision_loss, reason = "some hundred")]
+fn count(n: usize) -> f64 {
+    n as f64
+}
+
+/// Lines with error bars.
+fn entropy(cells: &[Vec<Measured>]) -> Chart {
+    let curve = |(noise, cells): (f64, &Vec<Measured>)| {
+        let readings = (1..=READINGS).step_by(4);
+        series(noise, readings.map(|n| point(cells, n, Histogram::entropy)).collect())
     };
     Chart {
-        title: "Entropy left after so many metres".into(),
-        subtitle: "Office, 20 × 12 m, ring of 24 sonars; mean and 95 % interval of 5 seeds".into(),
-        x: ChartAxis::new("driven [m]"),
-        y: ChartAxis { from: Some(0.0), ..ChartAxis::new("entropy of the map [% of the start]") },
-        series: names.iter().zip(rates).map(|(name, rate)| series(name, curve(rate))).collect(),
+        title: "Entropy of a cell that is measured again and again".into(),
+        subtitle: format!(
+            "simulated readings of cells that are covered 20 %; mean of {CELLS} cells, bars from the 5th to the 95th percentile"
+        ),
+        x: ChartAxis::new("readings"),
+        y: ChartAxis { from: Some(0.0), ..ChartAxis::new("entropy [nats]") },
+        series: NOISES.into_iter().zip(cells).map(curve).collect(),
     }
 }
 
 /// Two logarithmic axes.
-fn decades() -> Chart {
-    let power = |scale: f64, exponent: f64| -> Vec<ChartPoint> {
-        let point = |i: i32| {
-            let x = libm::pow(10.0, f64::from(i) / 3.0);
-            let y = scale * libm::pow(x, exponent);
-            ChartPoint { x, y, low: y / 1.5, high: y * 1.4 }
-        };
-        (0..=12).map(point).collect()
+fn error(cells: &[Vec<Measured>]) -> Chart {
+    let off = |belief: &Histogram| (belief.mean() - COVERAGE).abs();
+    let curve = |(noise, cells): (f64, &Vec<Measured>)| {
+        let mean = |n| ChartPoint::new(count(n), point(cells, n, off).y);
+        series(noise, [1, 2, 4, 8, 16, 32, READINGS].map(mean).to_vec())
+    };
+    // Of a mean of n numbers with σ = .4: √(2/π) · σ/√n.
+    let expected = |n: f64| ChartPoint::new(n, 0.8 * 0.4 / n.sqrt());
+    let expected = vec![expected(1.0), expected(count(READINGS))];
+    let plain = Series {
+        marks: false,
+        name: "a mean of readings, σ = 0.4".into(),
+        ..series(0.4, expected)
     };
     Chart {
-        title: "Time of a decision".into(),
-        subtitle: "median and quartiles of 1000 decisions".into(),
-        x: ChartAxis::logarithmic("candidates"),
-        y: ChartAxis::logarithmic("time [s]"),
-        series: vec![
-            series("as printed", power(4e-4, 1.0)),
-            series("with a cache of beams", power(1e-4, 0.7)),
-            Series {
-                marks: false,
-                ..series("a second", vec![ChartPoint::new(1.0, 1.0), ChartPoint::new(1e4, 1.0)])
-            },
-        ],
+        title: "Error of the expected coverage".into(),
+        subtitle: format!(
+            "simulated readings of cells that are covered 20 %; mean of {CELLS} cells"
+        ),
+        x: ChartAxis::logarithmic("readings"),
+        y: ChartAxis::logarithmic("mean error of the coverage"),
+        series: NOISES.into_iter().zip(cells).map(curve).chain([plain]).collect(),
     }
 }
 
-/// How the likelihood falls around its best, for each of twelve parameters.
-fn profiles() -> Figure {
-    let names = [
-        "σ_in [m]",
-        "σ_out [m]",
-        "α",
-        "β",
-        "opening angle [rad]",
-        "free [m]",
-        "range of trust [m]",
-        "λ [1/m]",
-        "p(echo)",
-        "ξ",
-        "width of the peak",
-        "τ",
-    ];
-    let panel = |(index, name): (usize, &&str)| {
-        let best = 0.02 * libm::pow(2.7, f64::from(u8::try_from(index % 7).unwrap_or(0)));
-        let profile = |bend: f64| -> Vec<ChartPoint> {
-            let point = |i: i32| {
-                let x = best * (1.0 + f64::from(i) / 12.0);
-                ChartPoint::new(x, -21_480.0 - bend * f64::from(i * i) - f64::from(i))
+/// Panels that share a legend: the posterior after so many readings.
+fn posteriors(cells: &[Vec<Measured>]) -> Figure {
+    let panel = |readings: usize| {
+        let curve = |(noise, cells): (f64, &Vec<Measured>)| {
+            let mean = |bin: usize| {
+                let y = point(cells, readings, |belief| belief.probabilities()[bin]).y;
+                ChartPoint::new(bin_coverage(bin, BINS), y)
             };
-            (-8..=8).map(point).collect()
+            series(noise, (0..BINS).map(mean).collect())
         };
         let chart = Chart {
-            title: String::new(),
+            title: format!("after {readings}"),
             subtitle: String::new(),
-            x: ChartAxis::new(*name),
-            y: ChartAxis::new(if index % 4 == 0 { "log-likelihood [nats]" } else { "" }),
-            series: vec![
-                series("fitted to all scans", profile(2.0 + index as f64)),
-                series("held-out scans", profile(1.5)),
-            ],
+            x: ChartAxis::new("coverage"),
+            y: ChartAxis { from: Some(0.0), to: Some(1.0), ..ChartAxis::new("probability") },
+            series: NOISES.into_iter().zip(cells).map(curve).collect(),
         };
         chart.into()
     };
     Figure {
-        title: "Profiles of the likelihood".into(),
-        subtitle: "each parameter alone, the others as fitted".into(),
-        panels: names.iter().enumerate().map(panel).collect(),
+        title: "The posterior of a cell that is covered 20 %".into(),
+        subtitle: format!("simulated; mean of {CELLS} cells, after so many readings"),
+        panels: [1, 4, 16, READINGS].map(panel).to_vec(),
         columns: 4,
     }
 }
 
-/// A sensor model: p(c = x | d) over the distance from the measured range.
-fn model() -> Figure {
-    let panel = |range: f64| {
-        let distances: Vec<f64> = (0..120).map(|i| (f64::from(i) + 0.5) * 0.025).collect();
-        let coverages: Vec<f64> = (0..21).map(|i| f64::from(i) / 20.0).collect();
-        let density = |distance: f64, coverage: f64| {
-            let offset = (distance - range) / (0.1 + 0.05 * range);
-            let mean = 0.8 * libm::exp(-offset * offset) + if offset > 1.0 { 0.4 } else { 0.0 };
-            let width = 0.12 + if offset > 1.0 { 0.3 } else { 0.0 };
-            libm::exp(-0.5 * ((coverage - mean) / width) * ((coverage - mean) / width))
-                / width
-                / 20.0
-        };
-        let row = |c: &f64| distances.iter().map(|d| density(*d, *c)).collect::<Vec<f64>>();
+/// Heat maps: the posterior of a single cell, reading by reading.
+fn one_cell(cells: &[Vec<Measured>]) -> Figure {
+    let readings: Vec<f64> = (1..=READINGS).map(count).collect();
+    let coverages: Vec<f64> = (0..BINS).map(|bin| bin_coverage(bin, BINS)).collect();
+    let panel = |(noise, cells): (f64, &Vec<Measured>)| {
+        let row = |bin: usize| cells[0].iter().map(move |belief| belief.probabilities()[bin]);
         let map = HeatMap {
-            title: format!("Range {range} m"),
+            title: format!("σ = {noise}"),
             subtitle: String::new(),
-            x: ChartAxis::new("distance of the cell [m]"),
+            x: ChartAxis::new("readings"),
             y: ChartAxis::new("coverage"),
-            value: ChartAxis { from: Some(0.0), ..ChartAxis::new("p(c = x | d)") },
-            x_edges: HeatMap::edges(&distances),
+            value: ChartAxis { from: Some(0.0), to: Some(1.0), ..ChartAxis::new("probability") },
+            x_edges: HeatMap::edges(&readings),
             y_edges: HeatMap::edges(&coverages),
-            values: coverages.iter().flat_map(row).collect(),
+            values: (0..BINS).flat_map(row).collect(),
             color_map: ColorMap::Viridis,
         };
         map.into()
     };
     Figure {
-        title: "Coverage of a cell, given a range".into(),
-        panels: [0.6, 1.2, 1.8, 2.4].map(panel).to_vec(),
+        title: "The posterior of one simulated cell that is covered 20 %".into(),
+        panels: NOISES.into_iter().zip(cells).map(panel).collect(),
         columns: 2,
         ..Figure::default()
     }

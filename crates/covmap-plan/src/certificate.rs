@@ -94,30 +94,16 @@ impl Planner {
         })
     }
 
-    /// The share of cells that are finished among those that are known or finished; cheap,
-    /// for progress.
-    pub fn share_finished(&self, map: &CoverageMap) -> f64 {
-        let status = |index: usize| {
-            let cell = self.grid.cell(index);
-            self.exploration.status(
-                index,
-                map.is_known(cell),
-                map.entropy(cell),
-                InSight::Candidate,
-            )
+    /// How many known cells are still open: neither resolved nor given up, whether or not they can
+    /// be seen from where the robot can go; cheap, for progress.
+    pub fn open_cells(&self, map: &CoverageMap) -> usize {
+        let is_open = |index: &usize| {
+            let cell = self.grid.cell(*index);
+            let (known, entropy) = (map.is_known(cell), map.entropy(cell));
+            let status = self.exploration.status(*index, known, entropy, InSight::Candidate);
+            known && status == CellStatus::Open
         };
-        let count = |wanted: fn(CellStatus) -> bool| {
-            (0..self.grid.len())
-                .filter(|i| map.is_known(self.grid.cell(*i)) && wanted(status(*i)))
-                .count()
-        };
-        let (finished, open) = (
-            count(|s| matches!(s, CellStatus::Resolved | CellStatus::Exhausted)),
-            count(|s| s == CellStatus::Open),
-        );
-        #[allow(clippy::cast_precision_loss, reason = "a share of at most 2e7 cells")]
-        let share = finished as f64 / (finished + open).max(1) as f64;
-        share
+        (0..self.grid.len()).filter(is_open).count()
     }
 
     /// How many cells were given up by the cap on counted scans.

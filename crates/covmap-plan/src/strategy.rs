@@ -109,7 +109,12 @@ impl FromStr for Strategy {
 
     fn from_str(text: &str) -> Result<Self, StrategyError> {
         let unknown = || StrategyError::Unknown(text.to_owned());
-        let mut parts = text.split(':');
+        // As it is typed, `COUNT:50:2`, or as it is printed, `COUNT(50, 2)`.
+        let printed = text.strip_suffix(')').and_then(|text| text.split_once('('));
+        let typed = printed.map(|(name, numbers)| {
+            format!("{name}:{}", numbers.replace(',', ":").replace(' ', ""))
+        });
+        let mut parts = typed.as_deref().unwrap_or(text).split(':');
         let name = parts.next().unwrap_or_default().to_ascii_uppercase();
         let numbers: Vec<f64> =
             parts.map(str::parse).collect::<Result<_, _>>().map_err(|_| unknown())?;
@@ -150,6 +155,18 @@ impl fmt::Display for Strategy {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_is_printed_is_read_back() {
+        for text in ["CL", "IG", "IG_WIN:2.5", "IG_CL:0.3", "IG_CL:1e9", "COUNT:7", "COUNT:50:2.5"]
+        {
+            let strategy: Strategy = text.parse().unwrap();
+            assert_eq!(strategy.to_string().parse(), Ok(strategy), "{strategy}");
+        }
+        for text in ["IG_CL(", "IG_CL()", "IG_CL(.3", "CL(1)", "COUNT(1, 2, 3)", "IG_CL((1))"] {
+            assert!(text.parse::<Strategy>().is_err(), "{text}");
+        }
+    }
 
     #[test]
     fn strategies_are_printed_as_in_figure_7() {

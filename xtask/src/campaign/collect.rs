@@ -44,7 +44,7 @@ pub(crate) fn run(arguments: &Collect) -> Result<ExitCode> {
     let runs: Vec<&Planned> = manifest.runs.iter().collect();
     let recorded = folder::read_all(out, &runs, false);
     let records: Vec<RunRecord> = recorded.into_iter().filter_map(Recorded::whole).collect();
-    tables::write(out, &manifest.metrics, &records)?;
+    tables::write(out, &manifest.metrics, &records, manifest.runs.len())?;
     if records.len() < manifest.runs.len() {
         let missing = manifest.runs.len() - records.len();
         say::note(format!("{}: {missing} runs are missing", out.display()));

@@ -2,7 +2,7 @@
 
 use super::file::Campaign;
 use super::plan::Plan;
-use super::pool::{Options, Step, run as run_all};
+use super::pool::{Options, run as run_all};
 use crate::arguments::Campaign as Arguments;
 use crate::interrupt::{self, Interrupt};
 use crate::progress::Bar;
@@ -28,12 +28,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let all = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
     let jobs = arguments.jobs.unwrap_or(all);
     let options = Options { jobs, shard: arguments.shard, out: &out, interrupt: &interrupt };
-    let bar = Bar::new(arguments.quiet);
-    let records = run_all(&campaign, &options, &|step| match step {
-        Step::Begin { recorded, of } => bar.begin(*recorded, *of),
-        Step::Note(note) => bar.note(note),
-        Step::Done => bar.done(),
-    });
+    let bar = Bar::new(&campaign.name, arguments.quiet);
+    let records = run_all(&campaign, &options, &|step| bar.note(step));
     bar.finish();
     let records = records?;
     if interrupt.done() {

@@ -6,7 +6,7 @@ use super::record::{RunRecord, Value, values};
 use anyhow::Result;
 use covmap_explore::{
     Accuracy, Config, CutOff, Ending, Event, Limits, Mission, SimulatedRobot, Summary, Tally,
-    TraceHasher, TraceHeader, Truth, explore,
+    TraceHasher, TraceHeader, Truth, View, explore,
 };
 use covmap_plan::Strategy;
 use covmap_world::{Extent, Scenario, Surface, World};
@@ -20,6 +20,9 @@ const LOOK_AFTER: f64 = 0.5;
 /// … or after this share of the path so far, whichever is more.
 const LOOK_AFTER_SHARE: f64 = 0.01;
 
+/// Looks at every event of a run, and says whether it goes on.
+type Watch<'a> = dyn FnMut(&Event, &View<'_>) -> ControlFlow<()> + 'a;
+
 /// A run that came to its end.
 pub(crate) struct Done {
     pub(crate) record: RunRecord,
@@ -27,11 +30,7 @@ pub(crate) struct Done {
 }
 
 /// Does one run; `None` if it is told to stop before its end.
-pub(crate) fn execute(
-    plan: &Plan,
-    job: &Job,
-    watch: &dyn Fn() -> ControlFlow<()>,
-) -> Result<Option<Done>> {
+pub(crate) fn execute(plan: &Plan, job: &Job, watch: &mut Watch<'_>) -> Result<Option<Done>> {
     let mission = plan.mission(job)?;
     let world = &plan.cases[job.case].world;
     let key = job.planned.key.clone();
@@ -46,7 +45,7 @@ fn measure(
     mission: &Mission,
     seed: u64,
     keep_paths: bool,
-    watch: &dyn Fn() -> ControlFlow<()>,
+    watch: &mut Watch<'_>,
 ) -> Result<Option<Measured>> {
     let begun = ThreadTime::now();
     let truth = Truth::new(world, mission);
@@ -76,9 +75,10 @@ fn measure(
             explored.push((rounded(view.path_length, 1e3), rounded(share, 1e6)));
             look_at = view.path_length + LOOK_AFTER.max(LOOK_AFTER_SHARE * view.path_length);
         }
+        let flow = watch(event, view);
         last = ThreadTime::now();
         aside += last.duration_since(now);
-        watch()
+        flow
     })?;
     if run.ending == Ending::Interrupted {
         return Ok(None);
@@ -131,7 +131,7 @@ pub(crate) fn numbers() -> Vec<String> {
     let measured = || -> Result<Option<Measured>> {
         let world = World::from_scenario(&closet, Surface::Rough)?;
         let mission = Mission::new(&world, &config, None, limits)?;
-        measure(&world, &mission, 1, false, &|| ControlFlow::Continue(()))
+        measure(&world, &mission, 1, false, &mut |_, _| ControlFlow::Continue(()))
     };
     let values = measured().ok().flatten().map(|(values, ..)| values).unwrap_or_default();
     let is_number = |(_, value): &(String, Value)| matches!(value, Value::Number(_));

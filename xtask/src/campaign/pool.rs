@@ -8,6 +8,7 @@ use super::record::RunRecord;
 use super::tables;
 use crate::interrupt::Interrupt;
 use anyhow::{Result, anyhow};
+use covmap_explore::{Event, View};
 use std::num::NonZeroUsize;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -34,6 +35,8 @@ pub(crate) enum Step {
     Begin { recorded: usize, of: usize },
     /// Something to know.
     Note(String),
+    /// A scan was made, so many metres after the one before in its run.
+    Scan { metres: f64 },
     /// A run is done and recorded.
     Done,
 }
@@ -88,7 +91,8 @@ pub(crate) fn run(
         recorded[index] = done;
     }
     let records: Vec<Option<RunRecord>> = recorded.into_iter().map(Recorded::whole).collect();
-    tables::write(options.out, &plan.manifest.metrics, records.iter().flatten())?;
+    let metrics = &plan.manifest.metrics;
+    tables::write(options.out, metrics, records.iter().flatten(), records.len())?;
     let mine = records.into_iter().enumerate().filter(|(index, _)| options.shard.has(*index));
     Ok(mine.filter_map(|(_, record)| record).collect())
 }
@@ -118,9 +122,16 @@ fn work(
     let (next, failed) = (AtomicUsize::new(0), AtomicBool::new(false));
     let error = Mutex::new(None);
     let stop = || failed.load(Ordering::SeqCst) || options.interrupt.is_pressed();
-    let watch = || if stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) };
     let one = |job: &Job| -> Result<()> {
-        if let Some(done) = execute(plan, job, &watch)? {
+        let mut driven = 0.0;
+        let mut watch = |event: &Event, view: &View<'_>| {
+            if matches!(event, Event::Scan { .. }) {
+                tell(&Step::Scan { metres: view.path_length - driven });
+                driven = view.path_length;
+            }
+            if stop() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        if let Some(done) = execute(plan, job, &mut watch)? {
             folder.write(&job.planned.id, &done.record, done.paths.as_ref())?;
             tell(&Step::Done);
         }

@@ -44,6 +44,14 @@ pub(crate) enum Value {
     Text(String),
 }
 
+impl RunRecord {
+    /// Whether it ended before all was explored, as at the most scans that its setting allows: to
+    /// the end it would have taken more scans and a longer path.
+    pub(crate) fn is_cut_short(&self) -> bool {
+        matches!(self.values.get("ending"), Some(Value::Text(ending)) if ending != "Explored")
+    }
+}
+
 impl fmt::Display for RunKey {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { world, setting, strategy, start, seed } = self;

@@ -1,28 +1,46 @@
 //! What a campaign came to, as tables.
+//!
+//! The tables of a campaign of which runs are missing say so in their names, `runs-8-of-12.csv`, so
+//! that nobody takes them for the result.
 
+use super::parameters::{PARAMETERS, parameters};
 use super::record::{RunRecord, Value};
 use crate::csv_file;
 use crate::input::about;
 use anyhow::Result;
 use covmap_explore::Spread;
+use covmap_plan::Strategy;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::Path;
 
-/// Writes `runs.csv`, `timings.csv` and `summary.csv`.
+const RUNS: &str = "runs";
+const TIMINGS: &str = "timings";
+const SUMMARY: &str = "summary";
+
+/// Writes the tables `runs`, `timings` and `summary` of the runs that are recorded of so many, and
+/// removes those of another number.
 ///
 /// The first and the last are a function of the campaign and the program; the times are not.
 pub(crate) fn write<'a>(
     dir: &Path,
     metrics: &[String],
     records: impl IntoIterator<Item = &'a RunRecord>,
+    of: usize,
 ) -> Result<()> {
     let records: &[&RunRecord] = &records.into_iter().collect::<Vec<_>>();
-    csv_file::write(&dir.join("runs.csv"), |out| {
+    let name = |table: &str| match records.len() {
+        all if all == of => format!("{table}.csv"),
+        some => format!("{table}-{some}-of-{of}.csv"),
+    };
+    let names = [RUNS, TIMINGS, SUMMARY].map(name);
+    remove_but(dir, &names)?;
+    let [runs, timings, summary] = names.map(|name| dir.join(name));
+    csv_file::write(&runs, |out| {
         let columns = records.first().map(|r| r.values.keys().cloned().collect::<Vec<_>>());
         let columns = columns.unwrap_or_default();
-        writeln!(out, "{KEY},{}", columns.join(","))?;
+        writeln!(out, "{KEY},{},{}", PARAMETERS.join(","), columns.join(","))?;
         for record in records {
             let value = |name: &String| {
                 record.values.get(name).map(|value| text(&value.to_string())).unwrap_or_default()
@@ -32,10 +50,10 @@ pub(crate) fn write<'a>(
         }
         Ok(())
     })?;
-    csv_file::write(&dir.join("timings.csv"), |out| {
+    csv_file::write(&timings, |out| {
         let columns = records.first().map(|r| r.times.keys().cloned().collect::<Vec<_>>());
         let columns = columns.unwrap_or_default();
-        writeln!(out, "{KEY},{}", columns.join(","))?;
+        writeln!(out, "{KEY},{},{}", PARAMETERS.join(","), columns.join(","))?;
         for record in records {
             let time = |name: &String| {
                 record.times.get(name).map(|time| format!("{time:.6}")).unwrap_or_default()
@@ -45,30 +63,52 @@ pub(crate) fn write<'a>(
         }
         Ok(())
     })?;
-    let summary = summary(metrics, records);
-    csv_file::write(&dir.join("summary.csv"), |out| out.write_all(summary.as_bytes()))
+    let rows = summarised(metrics, records);
+    csv_file::write(&summary, |out| out.write_all(rows.as_bytes()))
 }
 
 /// Removes the tables, so that none is there that does not tell of what is.
 pub(crate) fn remove(dir: &Path) -> Result<()> {
-    for name in ["runs.csv", "timings.csv", "summary.csv"] {
-        let file = dir.join(name);
-        match std::fs::remove_file(&file) {
-            Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                return Err(about(&file)(format!("cannot be removed: {error}")));
-            }
-            _ => {}
+    remove_but(dir, &[])
+}
+
+fn remove_but(dir: &Path, kept: &[String]) -> Result<()> {
+    let entries =
+        std::fs::read_dir(dir).map_err(|error| about(dir)(format!("cannot be read: {error}")))?;
+    for entry in entries.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        if is_table(&name) && !kept.contains(&name) {
+            let file = entry.path();
+            std::fs::remove_file(&file)
+                .map_err(|error| about(&file)(format!("cannot be removed: {error}")))?;
         }
     }
     Ok(())
 }
 
+/// Whether a file is called as one of ours: `runs.csv` or `runs-8-of-12.csv`.
+fn is_table(name: &str) -> bool {
+    let Some(name) = name.strip_suffix(".csv") else { return false };
+    let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
+    [RUNS, TIMINGS, SUMMARY].iter().filter_map(|table| name.strip_prefix(table)).any(|rest| {
+        let numbers = rest.strip_prefix('-').and_then(|rest| rest.split_once("-of-"));
+        rest.is_empty() || numbers.is_some_and(|(some, of)| is_number(some) && is_number(of))
+    })
+}
+
 const KEY: &str = "world,setting,strategy,start,seed";
 
+/// The fields of the key, and the strategy's parameters.
 fn key(record: &RunRecord) -> String {
     let key = &record.key;
     let names = [&key.world, &key.setting, &key.strategy].map(|name| text(name));
-    format!("{},{},{}", names.join(","), key.start, key.seed)
+    format!("{},{},{},{}", names.join(","), key.start, key.seed, numbers(&key.strategy))
+}
+
+/// The parameters of a strategy that is named as in Fig. 7.
+fn numbers(strategy: &str) -> String {
+    let strategy = strategy.parse::<Strategy>();
+    strategy.map_or_else(|_| Default::default(), |strategy| parameters(&strategy)).join(",")
 }
 
 /// A text in a table.
@@ -81,8 +121,8 @@ fn text(text: &str) -> String {
 }
 
 /// Mean, standard deviation and 95 % interval of each metric over starts and seeds, in the
-/// order of the campaign.
-fn summary(metrics: &[String], records: &[&RunRecord]) -> String {
+/// order of the campaign; with how many of these runs were cut short.
+fn summarised(metrics: &[String], records: &[&RunRecord]) -> String {
     let mut order: Vec<[&str; 3]> = Vec::new();
     let mut groups: BTreeMap<[&str; 3], Vec<&RunRecord>> = BTreeMap::new();
     for record in records {
@@ -94,22 +134,26 @@ fn summary(metrics: &[String], records: &[&RunRecord]) -> String {
         }
         runs.push(record);
     }
-    let mut table = "world,setting,strategy,metric,n,mean,sd,low,high\n".to_owned();
+    let parameters = PARAMETERS.join(",");
+    let mut table =
+        format!("world,setting,strategy,{parameters},metric,n,cut_short,mean,sd,low,high\n");
     for group in order {
-        let name = group.map(text).join(",");
+        let runs = &groups[&group];
+        let name = format!("{},{}", group.map(text).join(","), numbers(group[2]));
+        let cut_short = runs.iter().filter(|record| record.is_cut_short()).count();
         for metric in metrics {
             let number = |record: &&RunRecord| match record.values.get(metric) {
                 Some(Value::Number(number)) => Some(*number),
                 Some(Value::Text(_)) | None => None,
             };
-            let numbers: Vec<f64> = groups[&group].iter().filter_map(number).collect();
+            let numbers: Vec<f64> = runs.iter().filter_map(number).collect();
             let Some(spread) = Spread::of(&numbers) else { continue };
             let Spread { n, mean, deviation, interval } = spread;
             let rest = match deviation.zip(interval) {
                 Some((sd, (low, high))) => [sd, low, high].map(digits).join(","),
                 None => ",,".to_owned(),
             };
-            let _ = writeln!(table, "{name},{metric},{n},{},{rest}", digits(mean));
+            let _ = writeln!(table, "{name},{metric},{n},{cut_short},{},{rest}", digits(mean));
         }
     }
     table
@@ -119,4 +163,19 @@ fn summary(metrics: &[String], records: &[&RunRecord]) -> String {
 /// Student's distribution is approximated.
 fn digits(value: f64) -> String {
     format!("{value:.8e}").parse::<f64>().map_or_else(|_| value.to_string(), |v| v.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_what_a_campaign_writes_is_one_of_its_tables() {
+        for name in ["runs.csv", "timings.csv", "summary-0-of-12.csv", "runs-8-of-12.csv"] {
+            assert!(is_table(name), "{name}");
+        }
+        for name in ["runs", "runs-old.csv", "runs-8-of-.csv", "runs-8-of-12.csv.bak", "my.csv"] {
+            assert!(!is_table(name), "{name}");
+        }
+    }
 }

@@ -59,7 +59,7 @@ fn points(
         let (y, low, high) = spread(&cell.values(|series| of(series, k)));
         let has_bar = (k + 1).is_multiple_of(BARS);
         let (low, high) = if has_bar { (low, high) } else { (y, y) };
-        ChartPoint { x: count(k + 1), y, low, high }
+        ChartPoint { low, high, ..ChartPoint::new(count(k + 1), y) }
     };
     (0..MEASUREMENTS).map(point).collect()
 }

@@ -46,7 +46,8 @@ fn panel(configs: &[(&str, &[PartialCell])], case: usize) -> Chart {
 }
 
 fn points(cell: &PartialCell) -> Vec<ChartPoint> {
-    bins(cell).map(|(x, (y, low, high))| ChartPoint { x, y, low, high }).collect()
+    let point = |(x, (y, low, high))| ChartPoint { low, high, ..ChartPoint::new(x, y) };
+    bins(cell).map(point).collect()
 }
 
 /// The coverage of each bin, with mean and percentiles of its probability.

@@ -88,8 +88,9 @@ impl Pictured<'_> {
     }
 }
 
-/// The rows of Table 1: technique, path, share of uncertain cells, each with its interval.
-pub(crate) fn table_1(runs: &Runs) -> Vec<[String; 4]> {
+/// The rows of Table 1: technique, path, share of uncertain cells, and scans, each with its
+/// interval; and how many of how many runs were cut short.
+pub(crate) fn table_1(runs: &Runs) -> Vec<(Strategy, [String; 5])> {
     let row = |strategy: &Strategy| {
         let mean = |metric: &str| {
             let mean = runs.paired(&[*strategy], metric).mean(0);
@@ -101,7 +102,9 @@ pub(crate) fn table_1(runs: &Runs) -> Vec<[String; 4]> {
             Strategy::Cl => "coverage maps (CL)".to_owned(),
             other => format!("counting: {other}"),
         };
-        [technique, mean("path_length_m"), mean("share_uncertain"), mean("scans")]
+        let numbers = ["path_length_m", "share_uncertain", "scans"].map(mean);
+        let [path, uncertain, scans] = numbers;
+        (*strategy, [technique, path, uncertain, scans, runs.cut_short_of(*strategy)])
     };
     runs.strategies().iter().map(row).collect()
 }

@@ -3,6 +3,7 @@
 use super::output::Output;
 use crate::campaign::{NamedWorld, Paths};
 use crate::input;
+use crate::pictures::mark_cut_short;
 use anyhow::Result;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -22,6 +23,8 @@ pub(crate) struct Trajectory {
     pub(crate) title: String,
     pub(crate) subtitle: String,
     pub(crate) paths: Paths,
+    /// Whether the run ended before all was explored.
+    pub(crate) cut_short: bool,
 }
 
 /// Draws a path in its world.
@@ -38,9 +41,10 @@ pub(crate) fn write_trajectory(
     };
     let (driven, scans) = (points(&trajectory.paths.driven), points(&trajectory.paths.scans));
     let mut picture = Picture::new(*coverage.grid());
+    let cut_short = if trajectory.cut_short { "; cut short, and not the whole path" } else { "" };
     picture
         .title(&trajectory.title)
-        .subtitle(&trajectory.subtitle)
+        .subtitle(&format!("{}{cut_short}", trajectory.subtitle))
         .scale_bar()
         .cells(&coverage, |coverage| coverage_color(Some(*coverage)))
         .polyline(&driven, Rgb::BLUE, PATH_WIDTH)
@@ -52,6 +56,9 @@ pub(crate) fn write_trajectory(
     }
     if let Some(start) = driven.first() {
         picture.marker(*start, Marker::Disc, Rgb::GREEN, START_SIZE);
+    }
+    if let Some(end) = driven.last().filter(|_| trajectory.cut_short) {
+        mark_cut_short(&mut picture, *end);
     }
     write_picture(output, name, &picture)
 }

@@ -3,12 +3,14 @@
 use super::experiments::{B21R, PAPER, campaign, n_star, worlds};
 use super::runs::Runs;
 use super::session::{Series, Session};
+use crate::campaign::{PARAMETERS, parameters};
 use crate::figures::partial_cells::{self, PartialCell};
 use crate::figures::{Output, fig1, fig2, fig3, fig5, fig6, fig7};
 use crate::input;
 use anyhow::Result;
 use covmap_explore::Config;
 use covmap_model::SensorModel;
+use covmap_plan::Strategy;
 use std::path::PathBuf;
 
 /// Seeds of Fig. 1 and 2.
@@ -56,13 +58,18 @@ pub(crate) fn corridor(session: &Session<'_>, output: &Output) -> Result<[Runs; 
         if let Some(setting) = table_1.setting(name, true) {
             fig5::write(output, session, &table_1, setting, &suffix(name))?;
         }
-        let quoted = |cells: [String; 4]| {
-            let cells = cells.into_iter().map(|cell| format!("\"{cell}\""));
-            [name.to_owned()].into_iter().chain(cells).collect()
+        let row = |(strategy, cells): (Strategy, [String; 5])| -> Vec<String> {
+            let [technique, numbers @ ..] = cells.map(|cell| format!("\"{cell}\""));
+            [name.to_owned(), technique]
+                .into_iter()
+                .chain(parameters(&strategy))
+                .chain(numbers)
+                .collect()
         };
-        rows.extend(fig5::table_1(runs).into_iter().map(quoted));
+        rows.extend(fig5::table_1(runs).into_iter().map(row));
     }
-    let columns = ["config", "technique", "path_m", "share_with_h_above_0.65", "scans"];
+    let numbers = ["path_m", "share_with_h_above_0.65", "scans", "cut_short"];
+    let columns = [&["config", "technique"], &PARAMETERS[..], &numbers].concat();
     output.table("table1", &columns, &rows)?;
     Ok(both)
 }

@@ -17,6 +17,8 @@ pub(crate) struct Run {
     pub(crate) start: usize,
     pub(crate) seed: u64,
     pub(crate) values: BTreeMap<String, f64>,
+    /// Whether it ended before all was explored.
+    pub(crate) cut_short: bool,
 }
 
 /// Runs with the same configuration and the same way to measure.
@@ -54,7 +56,8 @@ impl Runs {
             values.extend(record.times.iter().map(|(name, time)| (name.clone(), *time)));
             let strategy = *names.get(&key.strategy)?;
             let (world, start, seed) = (key.world.clone(), key.start, key.seed);
-            Some(Run { world, strategy, start, seed, values })
+            let cut_short = record.is_cut_short();
+            Some(Run { world, strategy, start, seed, values, cut_short })
         };
         let mine = records.iter().filter(|record| record.key.setting == setting);
         Self { runs: mine.filter_map(run).collect() }
@@ -90,6 +93,16 @@ impl Runs {
     /// The runs of one strategy.
     pub(crate) fn with(&self, strategy: Strategy) -> impl Iterator<Item = &Run> {
         self.runs.iter().filter(move |run| run.strategy == strategy)
+    }
+
+    /// How many runs of one strategy ended before all was explored.
+    pub(crate) fn cut_short(&self, strategy: Strategy) -> usize {
+        self.with(strategy).filter(|run| run.cut_short).count()
+    }
+
+    /// The same in words: of how many.
+    pub(crate) fn cut_short_of(&self, strategy: Strategy) -> String {
+        format!("{} of {}", self.cut_short(strategy), self.with(strategy).count())
     }
 
     /// The numbers of a metric for one strategy.
@@ -180,6 +193,7 @@ pub(crate) fn made_up(rows: &[Row<'_>]) -> Runs {
         start: *start,
         seed: *seed,
         values: values.iter().map(|(name, value)| ((*name).to_owned(), *value)).collect(),
+        cut_short: false,
     };
     Runs { runs: rows.iter().map(run).collect() }
 }

@@ -1,7 +1,7 @@
 //! How the experiments are run: where, how many at a time, and how thoroughly.
 
 use crate::arguments::Experiments;
-use crate::campaign::{Campaign, Options, RunRecord, Seeds, Setting, Shard, Starts, Step, run};
+use crate::campaign::{Campaign, Options, RunRecord, Seeds, Setting, Shard, Starts, run};
 use crate::interrupt::Interrupt;
 use crate::progress::Bar;
 use crate::say;
@@ -79,12 +79,8 @@ impl<'a> Session<'a> {
         }
         let options =
             Options { jobs: self.jobs, shard: Shard::WHOLE, out: &dir, interrupt: self.interrupt };
-        let bar = Bar::new(self.quiet);
-        let records = run(&campaign, &options, &|step| match step {
-            Step::Begin { recorded, of } => bar.begin(*recorded, *of),
-            Step::Note(note) => bar.note(note),
-            Step::Done => bar.done(),
-        });
+        let bar = Bar::new(&campaign.name, self.quiet);
+        let records = run(&campaign, &options, &|step| bar.note(step));
         bar.finish();
         let records = records?;
         self.check()?;

@@ -32,6 +32,7 @@ pub(super) fn cost(runs: &Runs) -> Table {
     let columns = [
         "strategy",
         "runs",
+        "cut short",
         "scans",
         "path [m]",
         "cells explored per scan",
@@ -49,6 +50,7 @@ pub(super) fn cost(runs: &Runs) -> Table {
         vec![
             strategy.to_string(),
             runs.with(*strategy).count().to_string(),
+            runs.cut_short(*strategy).to_string(),
             number(&|run| run.value("scans")),
             number(&|run| run.value("path_length_m")),
             number(&|run| cells(run) / run.value("scans")),
@@ -65,6 +67,7 @@ pub(super) fn ablation(series: &Series) -> Table {
     let columns = [
         "setting",
         "strategy",
+        "cut short",
         "scans",
         "path [m]",
         "completeness",
@@ -89,7 +92,7 @@ pub(super) fn ablation(series: &Series) -> Table {
                 let mean = runs.paired(&[strategy], metric).mean(0);
                 mean.map_or("–".to_owned(), |mean| digits(mean.value))
             };
-            let names = [setting.name.clone(), strategy.to_string()];
+            let names = [setting.name.clone(), strategy.to_string(), runs.cut_short_of(strategy)];
             names.into_iter().chain(metrics.iter().map(mean)).collect()
         };
         runs.strategies().into_iter().map(row).collect::<Vec<Vec<String>>>()
@@ -98,13 +101,15 @@ pub(super) fn ablation(series: &Series) -> Table {
 }
 
 fn of_metrics(runs: &Runs, metrics: &[(&'static str, &str)]) -> Table {
-    let columns = ["strategy"].into_iter().chain(metrics.iter().map(|(name, _)| *name)).collect();
+    let names = metrics.iter().map(|(name, _)| *name);
+    let columns = ["strategy", "cut short"].into_iter().chain(names).collect();
     let row = |strategy: &Strategy| {
         let mean = |(_, metric): &(&str, &str)| {
             let mean = runs.paired(&[*strategy], metric).mean(0);
             mean.map_or("–".to_owned(), |mean| shown(Some(mean.value), mean.interval(0.95)))
         };
-        [strategy.to_string()].into_iter().chain(metrics.iter().map(mean)).collect()
+        let names = [strategy.to_string(), runs.cut_short_of(*strategy)];
+        names.into_iter().chain(metrics.iter().map(mean)).collect()
     };
     (columns, runs.strategies().iter().map(row).collect())
 }

@@ -47,6 +47,16 @@ fn run_files(shell: &Shell, dir: &str) -> Vec<PathBuf> {
     files
 }
 
+/// The names of the tables of a kind in a folder.
+fn tables(shell: &Shell, dir: &str, kind: &str) -> Vec<String> {
+    let entries = fs::read_dir(shell.path(dir)).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.retain(|name| name.starts_with(kind) && name.ends_with(".csv"));
+    names.sort();
+    names
+}
+
 /// The lines of a run's file that no clock has a part in.
 fn timeless(file: &Path) -> [String; 2] {
     let text = fs::read_to_string(file).unwrap();
@@ -189,6 +199,82 @@ fn tables_do_not_outlive_the_runs_that_they_tell_of() {
 }
 
 #[test]
+fn tables_of_a_part_say_of_how_many_until_nothing_is_missing() {
+    let shell = tiny();
+    let kinds = ["runs", "timings", "summary"];
+    let named = |suffix: &str| kinds.map(|kind| vec![format!("{kind}{suffix}.csv")]);
+    let found = |dir: &str| kinds.map(|kind| tables(&shell, dir, kind));
+    shell.expect("campaign tiny.ron --shard 1/4 --out part", 0);
+    assert_eq!(found("part"), named("-3-of-12"));
+    shell.expect("campaign tiny.ron --shard 2/4 --out other", 0);
+    shell.expect("collect part other", 0);
+    assert_eq!(found("part"), named("-6-of-12"));
+    shell.expect("campaign tiny.ron --out part", 0);
+    assert_eq!(found("part"), named(""));
+}
+
+#[test]
+fn the_numbers_of_a_strategy_and_the_runs_cut_short_have_columns() {
+    let shell = tiny();
+    let strategies = "strategies: [IgWin(radius: 2.5), Count(times: 3.0, half_distance: None), ";
+    shell.write("tiny.ron", campaign(&[("strategies: [", strategies)]));
+    shell.expect("campaign tiny.ron --quiet", 0);
+    let rows = |name: &str| -> Vec<(String, Vec<String>)> {
+        let text = fs::read_to_string(shell.path("out/tiny").join(name)).unwrap();
+        let mut lines = text.lines().map(fields);
+        let columns = lines.next().unwrap();
+        let at = |name: &str| columns.iter().position(|column| column == name).unwrap();
+        let wanted = ["alpha", "radius", "times", "half_distance"].map(at);
+        let row = |line: Vec<String>| {
+            (line[2].clone(), wanted.map(|column| line[column].clone()).to_vec())
+        };
+        lines.map(row).collect()
+    };
+    for name in ["runs.csv", "timings.csv", "summary.csv"] {
+        let rows = rows(name);
+        for (strategy, numbers) in [
+            ("CL", ["", "", "", ""]),
+            ("IG_CL(.3)", ["0.3", "", "", ""]),
+            ("IG_WIN(2.5)", ["", "2.5", "", ""]),
+            ("COUNT(3)", ["", "", "3", ""]),
+            ("COUNT(3, 2)", ["", "", "3", "2"]),
+        ] {
+            let mut mine = rows.iter().filter(|(name, _)| name == strategy).peekable();
+            assert!(mine.peek().is_some(), "{name}: {strategy}");
+            assert!(mine.all(|(_, found)| *found == numbers), "{name}: {strategy}");
+        }
+    }
+    // The runs that used up their twelve scans.
+    let runs = fs::read_to_string(shell.path("out/tiny/runs.csv")).unwrap();
+    let summary = fs::read_to_string(shell.path("out/tiny/summary.csv")).unwrap();
+    assert!(summary.starts_with(
+        "world,setting,strategy,alpha,radius,times,half_distance,metric,n,cut_short,mean,sd,low,high\n"
+    ));
+    let mut all = 0;
+    for line in summary.lines().skip(1).map(fields).filter(|line| line[7] == "scans") {
+        let mine = runs.lines().map(fields).filter(|run| run[2] == line[2]);
+        let cut = mine.filter(|run| run.contains(&"BudgetSpent".to_owned())).count();
+        assert_eq!((&line[8], &line[9]), (&"4".to_owned(), &cut.to_string()), "{line:?}");
+        all += cut;
+    }
+    assert!(all > 0, "some are cut short");
+}
+
+/// The fields of a line, some of them quoted.
+fn fields(line: &str) -> Vec<String> {
+    let mut fields = vec![String::new()];
+    let mut quoted = false;
+    for letter in line.chars() {
+        match letter {
+            '"' => quoted = !quoted,
+            ',' if !quoted => fields.push(String::new()),
+            letter => fields.last_mut().unwrap().push(letter),
+        }
+    }
+    fields
+}
+
+#[test]
 fn results_of_another_version_are_not_mixed_in() {
     let shell = tiny();
     shell.expect("campaign tiny.ron --shard 1/2 --out a", 0);
@@ -313,8 +399,11 @@ fn ctrl_c_ends_a_campaign_and_it_goes_on() {
     assert_eq!(child.wait().unwrap().code(), Some(130));
     let files = run_files(&shell, "run");
     assert!(files.len() >= 8 && files.iter().all(|file| timeless(file)[0].len() > 99));
-    let table = fs::read_to_string(shell.path("run/runs.csv")).unwrap();
+    // 2 starts, 400 seeds and 3 strategies.
+    let names = [format!("runs-{}-of-2400.csv", files.len())];
+    let table = fs::read_to_string(shell.path("run").join(&names[0])).unwrap();
     assert_eq!(table.lines().count(), files.len() + 1);
+    assert_eq!(tables(&shell, "run", "runs"), names);
 }
 
 #[test]

@@ -51,9 +51,10 @@ impl Look {
 
     /// Draws the mark of the series: after as many series as there are colours both the
     /// colour and the mark begin to differ anew, since their numbers have no common divisor.
-    pub(super) fn draw_mark(self, scene: &mut Scene, [x, y]: [f32; 2]) {
+    pub(super) fn draw_mark(self, scene: &mut Scene, [x, y]: [f32; 2], hollow: bool) {
         let color = self.color();
-        let (fill, rim, width) = (color, Rgb::WHITE, 0.7);
+        let (fill, rim, width) =
+            if hollow { (Rgb::WHITE, color, 1.8) } else { (color, Rgb::WHITE, 0.7) };
         let around = |corners: &[[f32; 2]]| Shape::Polygon {
             corners: corners.iter().map(|[a, b]| [x + a * RADIUS, y + b * RADIUS]).collect(),
             fill,
@@ -66,10 +67,7 @@ impl Look {
             2 => around(&[[0.0, -1.25], [1.15, 0.85], [-1.15, 0.85]]),
             3 => around(&[[0.0, -1.35], [1.35, 0.0], [0.0, 1.35], [-1.35, 0.0]]),
             4 => around(&[[0.0, 1.25], [1.15, -0.85], [-1.15, -0.85]]),
-            5 => {
-                let (fill, rim, width) = (Rgb::WHITE, color, 1.8);
-                Shape::Disc { center: [x, y], radius: RADIUS - 0.5, fill, rim, width }
-            }
+            5 => around(&[[0.0, -1.3], [1.24, -0.4], [0.76, 1.05], [-0.76, 1.05], [-1.24, -0.4]]),
             6 => around(&[[-0.6, -1.3], [0.6, -1.3], [0.6, 1.3], [-0.6, 1.3]]),
             _ => around(&[[-1.3, -0.6], [1.3, -0.6], [1.3, 0.6], [-1.3, 0.6]]),
         };
@@ -122,7 +120,7 @@ impl Legend {
                 look.draw_line(scene, vec![[x, middle], [x + SAMPLE, middle]]);
             }
             if look.marks {
-                look.draw_mark(scene, [x + SAMPLE / 2.0, middle]);
+                look.draw_mark(scene, [x + SAMPLE / 2.0, middle], false);
             }
             let at = [x + SAMPLE + GAP, middle + 0.36 * LEGEND_SIZE];
             scene.text(name, LEGEND_SIZE, at, Anchor::Start, Rgb::INK);

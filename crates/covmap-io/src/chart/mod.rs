@@ -26,7 +26,8 @@ use std::path::Path;
 /// use covmap_io::{Chart, ChartAxis, ChartPoint, Series};
 ///
 /// let errors = [(1.0, 0.062, 0.055, 0.071), (2.0, 0.041, 0.037, 0.046)];
-/// let points = errors.map(|(x, y, low, high)| ChartPoint { x, y, low, high });
+/// let point = |(x, y, low, high)| ChartPoint { low, high, ..ChartPoint::new(x, y) };
+/// let points = errors.map(point);
 /// let chart = Chart {
 ///     title: "Error of the map".into(),
 ///     subtitle: "mean and 95 % interval of 5 seeds".into(),
@@ -95,6 +96,9 @@ pub struct ChartPoint {
     pub low: f64,
     /// The upper end of the error bar; the same as `y`, or NaN: none.
     pub high: f64,
+    /// Whether its mark is drawn hollow, for a value that is not like the others, such as that
+    /// of a run that was cut short. The subtitle should say what it means.
+    pub hollow: bool,
 }
 
 /// A value over two axes as colours, such as p(c = x | d) over distance and coverage.
@@ -168,7 +172,7 @@ impl ChartAxis {
 impl ChartPoint {
     /// A point without an error bar.
     pub fn new(x: f64, y: f64) -> Self {
-        Self { x, y, low: y, high: y }
+        Self { x, y, low: y, high: y, hollow: false }
     }
 }
 

@@ -163,8 +163,10 @@ impl Chart {
                 }
             }
             if series.marks {
-                for at in shares.iter().flatten().filter(|at| is_inside(**at)) {
-                    look.draw_mark(scene, area.place(*at));
+                for (point, at) in series.points.iter().zip(&shares) {
+                    if let Some(at) = at.filter(|at| is_inside(*at)) {
+                        look.draw_mark(scene, area.place(at), point.hollow);
+                    }
                 }
             }
             empty &= shares.iter().all(Option::is_none);

@@ -2,7 +2,7 @@
 
 use super::scene::{Anchor, Scene, Shape};
 use super::*;
-use crate::picture::text::text_width;
+use crate::picture::{Rgb, text::text_width};
 use proptest::prelude::*;
 
 fn chart(series: Vec<Series>) -> Chart {
@@ -103,6 +103,29 @@ fn a_bar_is_drawn_as_far_as_the_frame() {
 }
 
 #[test]
+fn a_hollow_mark_has_the_colour_of_its_series_as_its_rim() {
+    for index in 0..8 {
+        let mut all = vec![series("", &[]); index];
+        all.push(Series { line: false, ..series("", &[(1.0, 5.0)]) });
+        let mark = |chart: &Chart| {
+            let scene = Figure::of(chart.clone()).lay_out();
+            let shape = scene.shapes.into_iter().find_map(|shape| match shape {
+                Shape::Disc { fill, rim, .. } | Shape::Polygon { fill, rim, .. } => {
+                    Some((fill, rim))
+                }
+                _ => None,
+            });
+            shape.unwrap()
+        };
+        let mut chart = chart(all);
+        let (color, white) = mark(&chart);
+        assert!(color != Rgb::WHITE && white == Rgb::WHITE);
+        chart.series[index].points[0].hollow = true;
+        assert_eq!(mark(&chart), (white, color), "series {index}");
+    }
+}
+
+#[test]
 fn panels_share_a_legend_if_their_series_are_the_same() {
     let panel = |names: &[&str]| -> Panel {
         chart(names.iter().map(|name| series(name, &[(0.0, 1.0)])).collect()).into()
@@ -199,12 +222,8 @@ fn any_axis() -> impl Strategy<Value = ChartAxis> {
 }
 
 fn any_series() -> impl Strategy<Value = Series> {
-    let point = (number(), number(), number(), number()).prop_map(|(x, y, low, high)| ChartPoint {
-        x,
-        y,
-        low,
-        high,
-    });
+    let point = (number(), number(), number(), number(), any::<bool>())
+        .prop_map(|(x, y, low, high, hollow)| ChartPoint { x, y, low, high, hollow });
     (".*", proptest::collection::vec(point, 0..8), any::<bool>(), any::<bool>())
         .prop_map(|(name, points, line, marks)| Series { name, points, line, marks })
 }

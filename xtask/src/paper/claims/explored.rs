@@ -27,11 +27,17 @@ pub(super) fn explored(runs: &Runs, strategies: &[Strategy]) -> Trial {
         all.len() - failed.len(),
         all.len()
     );
-    Trial::condition(what, holds).saying(if all.is_empty() {
-        Some("not measured: there are no such runs".to_owned())
-    } else {
-        names(&failed)
-    })
+    let condition = Trial::condition(what, holds);
+    if all.is_empty() {
+        return condition.saying(Some("not measured: there are no such runs".to_owned()));
+    }
+    let cut_short = all.iter().filter(|run| run.cut_short).count();
+    let cut_short = (cut_short > 0).then(|| {
+        format!(
+            "{cut_short} were cut short, and would have more scans and a longer path at their end"
+        )
+    });
+    condition.saying(names(&failed)).saying(cut_short)
 }
 
 fn is_explored(run: &Run) -> bool {
