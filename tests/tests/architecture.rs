@@ -1,7 +1,7 @@
 //! Invariants 1, 2 and 5 of the architecture, held by the manifests: which crate may name
 //! which.
 
-use crate::root;
+use crate::{root, rust_files};
 use std::collections::BTreeSet;
 
 /// Every crate, with the crates of covmap that it may use.
@@ -103,7 +103,7 @@ fn what_is_foreign_has_one_home() {
 #[test]
 fn only_files_and_the_program_touch_the_file_system() {
     for package in packages().iter().filter(|package| *package != "covmap-io") {
-        for source in sources(&root().join("crates").join(package).join("src")) {
+        for source in rust_files(&root().join("crates").join(package).join("src")) {
             let text = std::fs::read_to_string(&source).unwrap();
             // What follows are tests.
             let code = text.split("#[cfg(test)]").next().unwrap();
@@ -129,7 +129,7 @@ fn files_are_opened_and_written_in_one_way() {
     ];
     let mut looked_at = 0;
     for folder in ["crates/covmap-io/src", "xtask/src"] {
-        for source in sources(&root().join(folder)) {
+        for source in rust_files(&root().join(folder)) {
             let name = source.file_name().unwrap().to_str().unwrap();
             if homes.contains(&name) || name == "tests.rs" {
                 continue;
@@ -148,10 +148,4 @@ fn files_are_opened_and_written_in_one_way() {
         }
     }
     assert!(looked_at > 100);
-}
-
-fn sources(folder: &std::path::Path) -> Vec<std::path::PathBuf> {
-    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
-    let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
-    files.into_iter().chain(folders.iter().flat_map(|folder| sources(folder))).collect()
 }

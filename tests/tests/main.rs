@@ -3,6 +3,7 @@
 
 mod architecture;
 mod decisions;
+mod docs;
 mod shipped_files;
 mod turned_buildings;
 
@@ -21,4 +22,12 @@ fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
     paths.sort();
     assert!(!paths.is_empty(), "{folder} has no .{extension}");
     paths
+}
+
+/// The sources under a folder, however deep.
+fn rust_files(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());
+    let files = files.into_iter().filter(|file| file.extension().is_some_and(|end| end == "rs"));
+    files.chain(folders.iter().flat_map(|folder| rust_files(folder))).collect()
 }
