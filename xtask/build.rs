@@ -1,5 +1,5 @@
 //! Says which program this is: `COVMAP_VERSION` is the version of Cargo and the commit; and,
-//! where the sources differ from the commit, or there is none, a hash of them.
+//! where the sources differ from the commit (`dirty`), or there is none, a hash of them.
 
 use sha2::{Digest, Sha256};
 use std::fs;
@@ -25,7 +25,7 @@ fn main() {
     }
     let version = match commit(&root) {
         Some((commit, true)) => commit,
-        Some((commit, false)) => format!("{commit}.{}", hash(&root)),
+        Some((commit, false)) => format!("{commit}.dirty.{}", hash(&root)),
         None => format!("sources.{}", hash(&root)),
     };
     println!("cargo::rustc-env=COVMAP_VERSION={}+{version}", env!("CARGO_PKG_VERSION"));

@@ -10,7 +10,7 @@ pub(crate) use bench::{Bench, Rows};
 pub(crate) use experiments::{Experiments, Figure, Paper, Table};
 pub(crate) use files::{Force, Log, Model, Truth};
 
-use crate::campaign::Shard;
+use crate::campaign::{Shard, VERSION};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_model::Registers;
 use covmap_plan::Strategy;
@@ -181,7 +181,7 @@ Example:
 /// A simulated robot with a ring of sonars explores a world until a certificate says of every
 /// cell why there is nothing left to do.
 #[derive(Debug, Parser)]
-#[command(name = "xtask", bin_name = "cargo xtask", version, after_help = EXIT_CODES)]
+#[command(name = "xtask", bin_name = "cargo xtask", version = VERSION, after_help = EXIT_CODES)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,

@@ -155,6 +155,10 @@ pub(crate) fn in_words(ending: Ending) -> &'static str {
     }
 }
 
+/// What the words of the report mean, for who does not know them.
+const LEGEND: &str = "  (exhausted: still uncertain, and measuring helps no longer; wall recall: the \
+                      share of the walls in sight that the map has; docs/guide.md#reading-the-summary)";
+
 fn report(summary: &Summary, written: &Path) {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     say::line(format!("{}, {}: {}", summary.world, summary.strategy, in_words(summary.ending)));
@@ -186,6 +190,7 @@ fn report(summary: &Summary, written: &Path) {
     if summary.cut_off.cells > 0 {
         say::line(format!("  {}", cut_off(&summary.cut_off, summary.resolution)));
     }
+    say::line(LEGEND);
     say::line(format!("  {}", written.display()));
 }
 

@@ -25,6 +25,8 @@ struct Report<'a> {
     file: &'a Path,
     seed: u64,
     weighting: Weighting,
+    /// Whether Ctrl-C ended the search before its time: what was found is the best so far.
+    interrupted: bool,
     training: Compared,
     held_out: Vec<Compared>,
     /// Difference of the objective for each held-out example, after − before.
@@ -51,6 +53,9 @@ struct Paired {
     low: f64,
     high: f64,
 }
+
+/// What is added to the words on a search that Ctrl-C ended.
+pub(crate) const INTERRUPTED: &str = "; INTERRUPTED, the best that was found so far";
 
 pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
@@ -79,6 +84,7 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
         file: &arguments.file,
         seed: file.seed,
         weighting: file.weighting,
+        interrupted: interrupt.is_pressed(),
         training: compare("training", &training)?,
         held_out_difference: paired(&held_out, file.weighting),
         held_out,
@@ -143,11 +149,12 @@ fn write(folder: &OutputFolder, config: &Config, report: &Report<'_>) -> Result<
     let fitted = Config { model: report.after.clone(), ..config.clone() };
     input::check(&fitted, Path::new("the fitted configuration"))?;
     let comment = format!(
-        "Fitted by `cargo xtask fit {}`, seed {}.\n\
+        "Fitted by `cargo xtask fit {}`, seed {}{}.\n\
          Mean log-likelihood of the true coverage of a cell [nats], before → after:\n\
          training {:.4} → {:.4} ({} cells){}",
         report.file.display(),
         report.seed,
+        if report.interrupted { INTERRUPTED } else { "" },
         report.training.before.all.log_likelihood,
         report.training.after.all.log_likelihood,
         report.training.after.all.cells,

@@ -4,6 +4,7 @@ mod knobs;
 mod table;
 
 use crate::arguments::Readings as Arguments;
+use crate::fit::INTERRUPTED;
 use crate::input::{self, about};
 use crate::interrupt::{self, Interrupt};
 use crate::mapper::Stride;
@@ -76,9 +77,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         let (before, after) =
             (real.log_likelihood_under(&rows[1].1), real.log_likelihood_under(&simulated));
         let comment = format!(
-            "Physics fitted to the readings of {}, by `cargo xtask readings`.\n\
+            "Physics fitted to the readings of {}, by `cargo xtask readings`{}.\n\
              Mean log-likelihood of the kind of a reading [nats]: {before:.3} → {after:.3}, of {} readings",
             arguments.log.file_name().unwrap_or_default().to_string_lossy(),
+            if interrupt.is_pressed() { INTERRUPTED } else { "" },
             real.count()
         );
         write_ron(folder.path("config.ron"), &fitted, Some(&comment))?;

@@ -45,11 +45,30 @@ const KEYS: [&str; 24] = [
 ];
 
 #[test]
+fn the_version_names_the_commit_or_a_hash_of_the_sources() {
+    let typed = Shell::new().expect("--version", 0);
+    let version = typed.out.trim().strip_prefix("xtask ").unwrap();
+    let (cargo, build) = version.split_once('+').unwrap();
+    assert_eq!(cargo, env!("CARGO_PKG_VERSION"));
+    let is_hash = |text: &str| text.len() == 12 && text.bytes().all(|b| b.is_ascii_hexdigit());
+    let is_build = match &build.split('.').collect::<Vec<_>>()[..] {
+        [commit] => is_hash(commit),
+        ["sources", hash] => is_hash(hash),
+        [commit, "dirty", hash] => is_hash(commit) && is_hash(hash),
+        _ => false,
+    };
+    assert!(is_build, "{version}");
+}
+
+#[test]
 fn a_run_writes_every_file_and_ends_when_its_budget_is_spent() {
     let shell = Shell::new();
     let typed = shell.expect(&short_run(), 3);
     assert!(typed.out.contains("budget") && typed.out.contains("run"), "{typed:?}");
     assert_eq!(typed.err, "", "nothing of the progress when piped");
+    for word in ["(exhausted: ", "wall recall: ", "docs/guide.md#reading-the-summary"] {
+        assert!(typed.out.contains(word), "{word} is explained where it is printed: {typed:?}");
+    }
     for name in FILES {
         assert!(std::fs::metadata(shell.path("run").join(name)).unwrap().len() > 0, "{name}");
     }
