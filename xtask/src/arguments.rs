@@ -158,8 +158,9 @@ damaged results are done again. Ctrl-C ends it, and what is done stays.
 The folder that is written:
   runs.csv                  a line a run: all numbers but times
   timings.csv               a line a run: times
-  summary.csv               mean, standard deviation, 95 % confidence interval of the mean, n
+  summary.csv               mean, standard deviation, 95 % interval of the mean, n, n cut short
   campaign.json, runs/      the list of the runs, and a file for each that is done
+As long as runs are missing, the names of the tables say so: runs-8-of-12.csv.
 
 Examples:
   cargo xtask campaign configs/fig7.ron

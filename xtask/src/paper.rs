@@ -87,6 +87,7 @@ fn evidence(session: &Session<'_>, output: &Output) -> Result<[Evidence; 2]> {
         session.check()?;
         let Some((((cells, model), corridor), counting)) = parts.next() else { break };
         let Some(([at_view_points, while_driving], places)) = rest.next() else { break };
+        session.tell(&format!("{name}.ron: a fit, oblique walls, and the ends of IG_CL"));
         let (config, _): (Config, _) = drawing::config(name)?;
         evidence.push(Evidence {
             cells,

@@ -366,6 +366,30 @@ fn a_passage_that_is_too_long_is_not_tried() {
 }
 
 #[test]
+fn open_cells_are_the_known_ones_that_are_neither_resolved_nor_given_up() {
+    let mut s = setting(Strategy::Cl, 11, |_| {});
+    assert_eq!(s.planner.open_cells(&s.map), 0, "nothing is known");
+    for (x, range) in [(-0.4, 1.2), (0.0, 1.3), (0.4, 0.9)] {
+        s.stand(x, 0.0);
+        s.scan(x, 0.0, &[Range::Echo(range); 24]);
+        let from = s.map.grid().cell_at(Point2::new(x, 0.0)).unwrap();
+        let certificate = s.planner.certificate(&s.map, from);
+        let count = |statuses: &[CellStatus]| {
+            let known = certificate.iter().filter(|(cell, _)| s.map.is_known(*cell));
+            known.filter(|(_, status)| statuses.contains(status)).count()
+        };
+        let open = s.planner.open_cells(&s.map);
+        let (sure, all) = (
+            count(&[CellStatus::Open]),
+            count(&[CellStatus::Open, CellStatus::Unreachable, CellStatus::Exhausted]),
+        );
+        assert!(sure > 0 && (sure..=all).contains(&open), "{sure} {open} {all}");
+        // Nothing was given up yet, so what is exhausted is in sight of spent places only.
+        assert_eq!(open, all);
+    }
+}
+
+#[test]
 fn beams_of_too_many_cells_are_refused() {
     let planner = |r: f64| {
         let ring = SonarRing::b21r();

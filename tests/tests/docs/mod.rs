@@ -191,6 +191,24 @@ fn anchors(page: &PathBuf) -> Vec<String> {
 }
 
 #[test]
+fn figures_name_their_commit() {
+    for page in ["docs/results.md", "docs/fitting.md"] {
+        let text = fs::read_to_string(root().join(page)).unwrap();
+        let rows: Vec<Vec<&str>> = text
+            .lines()
+            .filter(|line| line.starts_with("| ["))
+            .map(|line| line.split('|').map(str::trim).collect())
+            .collect();
+        for heading in text.lines().filter_map(|line| line.strip_prefix("## ")) {
+            let row = rows.iter().find(|row| row[1].starts_with(&format!("[{heading}](")));
+            let commit = row.unwrap_or_else(|| panic!("{page}: no row of {heading}"))[2];
+            let is_hash = commit.len() >= 7 && commit.bytes().all(|b| b.is_ascii_hexdigit());
+            assert!(is_hash, "{page}: {heading}: {commit}");
+        }
+    }
+}
+
+#[test]
 fn every_file_of_the_repository_that_is_named_exists() {
     let folders = ["crates/", "configs/", "scenarios/", "docs/", "tests/", "xtask/"];
     let mut complaints = Vec::new();

@@ -2,7 +2,7 @@
 
 use super::file::Campaign;
 use super::plan::Plan;
-use super::pool::{Options, run as run_all};
+use super::pool::{Options, Step, run as run_all};
 use crate::arguments::Campaign as Arguments;
 use crate::interrupt::{self, Interrupt};
 use crate::progress::Bar;
@@ -11,6 +11,7 @@ use anyhow::Result;
 use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
@@ -29,13 +30,19 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let jobs = arguments.jobs.unwrap_or(all);
     let options = Options { jobs, shard: arguments.shard, out: &out, interrupt: &interrupt };
     let bar = Bar::new(&campaign.name, arguments.quiet);
-    let records = run_all(&campaign, &options, &|step| bar.note(step));
+    let all = AtomicUsize::new(0);
+    let records = run_all(&campaign, &options, &|step| {
+        if let Step::Begin { of, .. } = step {
+            all.store(*of, Ordering::Relaxed);
+        }
+        bar.note(step);
+    });
     bar.finish();
     let records = records?;
     if interrupt.done() {
-        let (done, name) = (records.len(), &campaign.name);
+        let (done, all, name) = (records.len(), all.into_inner(), &campaign.name);
         say::note(format!(
-            "interrupted; {done} runs of {name} are recorded, and begun again it goes on"
+            "interrupted; {done} of {all} runs of {name} are recorded, and begun again it goes on"
         ));
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     }

@@ -74,9 +74,7 @@ impl<'a> Session<'a> {
     /// If it is wrong or cannot be written, and after Ctrl-C.
     pub(crate) fn run(&self, campaign: Campaign) -> Result<Series> {
         let dir = self.folder(&campaign);
-        if !self.quiet {
-            say::line(format!("{}: {}", campaign.name, dir.display()));
-        }
+        self.tell(&format!("{}: {}", campaign.name, dir.display()));
         let options =
             Options { jobs: self.jobs, shard: Shard::WHOLE, out: &dir, interrupt: self.interrupt };
         let bar = Bar::new(&campaign.name, self.quiet);
@@ -88,6 +86,13 @@ impl<'a> Session<'a> {
             ran.extend(campaign.settings.iter().map(|setting| row(&campaign, setting, &records)));
         }
         Ok(Series { campaign, dir, records })
+    }
+
+    /// Says that something else takes time now.
+    pub(crate) fn tell(&self, text: &str) {
+        if !self.quiet {
+            say::line(text);
+        }
     }
 
     /// What was run, for the report: [`RAN`] are the columns.
