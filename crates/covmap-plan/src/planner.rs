@@ -29,13 +29,14 @@ pub const GAIN_TOLERANCE: f64 = 1e-5;
 /// All maps that it is given must be on the grid of `outside` in [`Planner::new`], and all scans
 /// must have one reading for each beam: it panics if they do not fit.
 ///
-/// Tell it of everything that happens ([`observe`], [`body_moved`], [`stand_on`],
-/// [`bump_at`]), then ask it to [`choose`].
+/// Tell it of everything that happens ([`observe`], [`body_moved`], [`stand_on`], [`drove`],
+/// [`bump`]), then ask it to [`choose`].
 ///
 /// [`observe`]: Planner::observe
 /// [`body_moved`]: Planner::body_moved
 /// [`stand_on`]: Planner::stand_on
-/// [`bump_at`]: Planner::bump_at
+/// [`drove`]: Planner::drove
+/// [`bump`]: Planner::bump
 /// [`choose`]: Planner::choose
 #[derive(Debug, Clone)]
 pub struct Planner {
