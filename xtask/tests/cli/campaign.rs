@@ -100,9 +100,9 @@ fn a_line_holds_what_the_summary_of_the_same_run_does() {
     shell.expect(line, 3);
     let summary = shell.json("one/summary.json");
     for (name, value) in summary.as_object().unwrap() {
-        let in_the_key = ["world", "strategy", "seed", "seconds"].contains(&name.as_str());
-        let by_surface = name.starts_with("wall_recall_");
-        if in_the_key || by_surface || value.is_object() {
+        // Groups have a column for each number, and not every world has walls of either surface.
+        let elsewhere = ["world", "strategy", "seed", "seconds"].contains(&name.as_str());
+        if elsewhere || value.is_object() || name.starts_with("wall_recall_") {
             continue;
         }
         let column = columns.iter().position(|column| column == name);
@@ -161,8 +161,7 @@ fn what_is_done_is_not_done_again_but_what_is_damaged_is() {
     fs::write(&files[5], "").unwrap();
     fs::write(&files[7], &before[7][..before[7].len() - 9]).unwrap();
     fs::copy(&files[8], &files[9]).unwrap();
-    fs::write(shell.path("out/tiny/runs/0123456789abcdef0123456789abcdef.run.partial"), "cut")
-        .unwrap();
+    fs::write(shell.path("out/tiny/runs/0.partial"), "cut").unwrap();
     let typed = shell.expect("campaign tiny.ron --jobs 2", 0);
     assert_eq!(typed.err.lines().count(), 5, "{typed:?}");
     for damaged in [1, 3, 5, 7, 9] {
