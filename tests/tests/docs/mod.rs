@@ -252,6 +252,7 @@ fn what_is_not_there_is_missed() {
         "covmap_explore::Robot::drive",
         "covmap_io::log::LogReader",
         "covmap_model::integrate",
+        "covmap::Steps",
     ] {
         assert_eq!(found(path), Ok(Found::Public), "{path}");
     }

@@ -180,12 +180,13 @@ fn parse(text: &str) -> Source {
         let (mut header, mut body) = (rest.to_owned(), Vec::new());
         if !line.ends_with([';', '}']) {
             for line in lines.by_ref() {
-                if header.ends_with('{') {
+                let in_body = header.ends_with('{');
+                if in_body {
                     body.push(line.to_owned())
                 } else {
-                    header += line
+                    header = format!("{header} {}", line.trim())
                 }
-                if line.starts_with(['}', ']']) || line == ");" {
+                if line.starts_with(['}', ']']) || !in_body && line.ends_with(';') {
                     break;
                 }
             }
