@@ -1,0 +1,63 @@
+//! What becomes of every cell: the first word that applies.
+
+use super::corridor::{Corridor, plain, two_bins};
+use covmap_plan::CellStatus::{Exhausted, Open, Outside, Resolved, Unreachable};
+use covmap_plan::Strategy;
+
+/// A robot that looks 2 m to the right along twelve cells, of which the last two lie outside. It
+/// does not know the cells 3, 5, 10 and 11.
+fn corridor() -> Corridor {
+    let (model, parameters) = (two_bins(2.0), plain(Strategy::Cl));
+    let mut corridor = Corridor::build(12, &[0.0], &model, &parameters, 0.3, |x| x >= 10);
+    corridor.free_but(&[3, 5, 10, 11]);
+    corridor
+}
+
+#[test]
+fn every_cell_has_one_word() {
+    let mut corridor = corridor();
+    let statuses: Vec<_> = (0..12).map(|x| corridor.status(0, x)).collect();
+    // The robot gets as far as cell 2, from where it sees 3 and 4; cell 5 is out of its sight, but
+    // what is resolved is so from anywhere.
+    let mut expected = [Resolved; 12];
+    (expected[3], expected[5]) = (Open, Unreachable);
+    (expected[10], expected[11]) = (Outside, Outside);
+    assert_eq!(statuses, expected);
+    // What is known outside is outside none the less.
+    corridor.know(10, &[0.999, 0.001]);
+    assert_eq!(corridor.status(0, 10), Outside);
+}
+
+#[test]
+fn a_cell_is_resolved_with_an_entropy_of_at_most_epsilon() {
+    let mut corridor = corridor();
+    // ε = .1: .0980 and .1058.
+    corridor.know(3, &[0.98, 0.02]);
+    assert_eq!(corridor.status(0, 3), Resolved);
+    corridor.know(3, &[0.978, 0.022]);
+    assert_eq!(corridor.status(0, 3), Open);
+    // Beyond cell 3, which is free now, the robot sees cell 5.
+    assert_eq!(corridor.status(0, 5), Open);
+}
+
+#[test]
+fn a_cell_that_is_given_up_is_exhausted_also_out_of_sight() {
+    let mut corridor = corridor();
+    corridor.look(2, 3, 0.5);
+    (0..5).for_each(|_| corridor.look_in_vain(2));
+    assert_eq!(corridor.status(0, 3), Exhausted);
+    corridor.know(1, &[0.01, 0.99]);
+    assert_eq!(corridor.status(0, 3), Exhausted);
+    // And when it is known after all, it is resolved.
+    corridor.know(3, &[0.999, 0.001]);
+    assert_eq!(corridor.status(0, 3), Resolved);
+}
+
+#[test]
+fn what_is_hidden_behind_a_wall_is_out_of_reach() {
+    let mut corridor = corridor();
+    corridor.know(1, &[0.01, 0.99]);
+    assert_eq!([1, 3].map(|x| corridor.status(0, x)), [Resolved, Unreachable]);
+    // From beyond the wall it is open.
+    assert_eq!(corridor.status(2, 3), Open);
+}
