@@ -61,3 +61,24 @@ impl Window {
         all
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point2;
+
+    #[test]
+    fn a_window_is_a_circle_with_its_edge() {
+        let grid = Grid::new(Point2::origin(), 0.5, 7, 7).unwrap();
+        let mut window = Window::new(grid, 1.0);
+        assert!((0..grid.len()).all(|i| !window.holds(i)), "none is open yet");
+        window.open(Cell::new(3, 3));
+        let mark = |x, y| grid.index(Cell::new(x, y)).is_some_and(|i| window.holds(i));
+        let row = |y| (0..7).map(|x| if mark(x, y) { '#' } else { '.' }).collect::<String>();
+        let drawn: Vec<String> = (0..7).map(row).collect();
+        let disc = [".......", "...#...", "..###..", ".#####.", "..###..", "...#...", "......."];
+        assert_eq!(drawn, disc);
+        assert_eq!(window.close().len(), 13);
+        assert_eq!((window.center(), window.close().len()), (None, 0));
+    }
+}

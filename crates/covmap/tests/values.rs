@@ -121,13 +121,14 @@ fn a_tie_is_the_lower_coverage_one_by_one_and_side_by_side() {
     map.multiply(Cell::new(0, 0), &[0.1, 0.4, 0.4, 0.1]);
     assert_eq!(map.mode(Cell::new(0, 0)), 1.0 / 3.0);
     let mut block = EvidenceBlock::new(4);
-    for (bin, weight) in [0.25, 0.5, 0.5, 0.5].into_iter().enumerate() {
-        block.weights()[bin / TOGETHER][bin % TOGETHER][0] = weight;
+    // Beside the tie: a bin that is larger than the one before it is not the largest yet.
+    for (bin, weights) in [[0.25, 0.5], [0.5, 0.1], [0.5, 0.3], [0.5, 0.1]].iter().enumerate() {
+        block.weights()[bin / TOGETHER][bin % TOGETHER][..2].copy_from_slice(weights);
     }
     let mut cells = [EvidenceBlock::NO_CELL; LANES];
-    cells[0] = 1;
+    (cells[0], cells[1]) = (1, 2);
     map.multiply_block(&mut block, &cells, |_, _, _| ());
-    assert_eq!(map.mode(Cell::new(1, 0)), 1.0 / 3.0);
+    assert_eq!((map.mode(Cell::new(1, 0)), map.mode(Cell::new(2, 0))), (1.0 / 3.0, 0.0));
 }
 
 #[test]
@@ -169,6 +170,15 @@ fn evidence_that_says_nothing_makes_a_cell_known_once() {
     let (mut map, cell) = (empty(4), Cell::new(0, 1));
     assert!(map.multiply(cell, &[0.25; 4]).is_some() && map.is_known(cell));
     assert_eq!(map.multiply(cell, &[0.25; 4]), None);
+    // Side by side as well.
+    let (mut block, mut cells) = (EvidenceBlock::new(4), [EvidenceBlock::NO_CELL; LANES]);
+    cells[3] = 1;
+    for expected in [1, 0] {
+        block.weights()[0] = [[1.0; LANES]; TOGETHER];
+        let mut changes = 0;
+        map.multiply_block(&mut block, &cells, |_, _, _| changes += 1);
+        assert_eq!((changes, map.is_known(Cell::new(1, 0))), (expected, true));
+    }
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use super::{all_close, close, mission};
 use covmap::Cell;
-use covmap_explore::{Ending, Event, Limits, Robot, Run, explore};
-use covmap_plan::CellStatus;
+use covmap_explore::{Ending, Event, Limits, Mission, Robot, Run, explore};
+use covmap_plan::{BodyEvidence, CellStatus};
 use covmap_sonar::Range;
 use covmap_world::Drive;
 use nalgebra::{Isometry2, Point2};
@@ -28,9 +28,12 @@ impl Robot for Told {
 
 /// A run along six cells from the middle of the second, with rays of 1 m to both sides.
 fn run(wall: f64, limits: Limits) -> (Run, Vec<Event>) {
-    let mission = mission(6, &[0.0, 180.0], 1.0, limits);
+    run_of(&mission(6, &[0.0, 180.0], 1.0, limits), wall)
+}
+
+fn run_of(mission: &Mission, wall: f64) -> (Run, Vec<Event>) {
     let mut events = Vec::new();
-    let run = explore(&mission, &mut Told { beams: 2, wall }, &mut |event, _| {
+    let run = explore(mission, &mut Told { beams: 2, wall }, &mut |event, _| {
         events.push(event.clone());
         ControlFlow::Continue(())
     });
@@ -96,16 +99,68 @@ fn the_robot_measures_at_view_points() {
 }
 
 #[test]
+fn every_decision_is_made_where_the_last_one_led() {
+    let (_, events) = run(f64::INFINITY, budget(8, None));
+    let decisions: Vec<(Cell, Cell)> = events
+        .iter()
+        .filter_map(|e| match e {
+            Event::Decision { from, decision, .. } => Some((*from, decision.target)),
+            _ => None,
+        })
+        .collect();
+    assert!(decisions.len() >= 6 && decisions[0].0 == Cell::new(1, 0));
+    assert!(decisions.iter().any(|(from, to)| from != to));
+    assert!(decisions.windows(2).all(|pair| pair[0].1 == pair[1].0), "{decisions:?}");
+}
+
+#[test]
 fn the_robot_measures_every_so_many_metres_on_its_way() {
-    // From 1.5 m to the view-point at 2.5 m, from there to 3.5 m, …: every .4 m since the last scan.
-    let (run, events) = run(f64::INFINITY, budget(7, Some(0.4)));
-    let moves: Vec<f64> = places(&run).windows(2).map(|pair| pair[1] - pair[0]).collect();
-    assert!(moves.iter().all(|way| way.abs() <= 0.4 + 1e-9), "{moves:?}");
-    assert!(moves.iter().any(|way| (way.abs() - 0.4).abs() < 1e-9), "{moves:?}");
-    assert!(moves.iter().any(|way| (way.abs() - 0.2).abs() < 1e-9), "{moves:?}");
-    assert_eq!(run.scans.len(), 7);
+    // View-points are 2 m apart, beyond another cell; on the way it measures every .3 m.
+    let mut mission = mission(9, &[0.0, 180.0], 3.0, budget(9, Some(0.3)));
+    mission.config.planner.scan_spacing = 2.0;
+    let (run, events) = run_of(&mission, f64::INFINITY);
+    let expected = [1.5, 1.8, 2.1, 2.4, 2.7, 3.0, 3.3, 3.5, 3.8];
+    all_close(&places(&run), &expected, 1e-9);
+    assert_eq!((run.ending, run.decisions), (Ending::BudgetSpent, 2));
     let scans = events.iter().filter(|e| matches!(e, Event::Scan { .. })).count();
-    assert_eq!(scans, 7);
+    assert_eq!(scans, 9);
+}
+
+#[test]
+fn to_stay_in_a_cell_is_to_go_to_its_centre() {
+    let mut mission = mission(6, &[0.0, 180.0], 1.0, budget(2, None));
+    mission.start = Isometry2::new([1.6, 0.5].into(), 0.0);
+    let (run, events) = run_of(&mission, f64::INFINITY);
+    let stays =
+        |e: &Event| matches!(e, Event::Decision { decision, .. } if decision.path.is_empty());
+    assert!(stays(&events[1]), "{:?}", events[1]);
+    all_close(&places(&run), &[1.6, 1.5], 1e-12);
+}
+
+#[test]
+fn where_the_robot_stood_in_a_run_it_can_stand_again() {
+    // When it has measured in cell 2, cells 1 and 3 turn out to look like walls. It was in one.
+    let mut mission = mission(6, &[0.0, 180.0], 1.0, budget(30, None));
+    mission.config.planner.body_evidence = BodyEvidence::PlannerOnly;
+    let mut stands = None;
+    let robot = &mut Told { beams: 2, wall: f64::INFINITY };
+    let run = explore(&mission, robot, &mut |event, view| {
+        let Event::Scan { scan, .. } = event else { return ControlFlow::Continue(()) };
+        if (scan.pose.translation.x - 2.5).abs() > 1e-9 {
+            return ControlFlow::Continue(());
+        }
+        let (mut map, mut planner) = (view.map.clone(), view.planner.clone());
+        let walls = [1, 3].map(|x| Cell::new(x, 0));
+        for wall in walls {
+            let change = (0..9).filter_map(|_| map.multiply(wall, &[0.01, 0.01, 0.98])).last();
+            let far = Point2::new(-99.0, -99.0);
+            planner.body_moved(&map, far, far, change.as_slice());
+        }
+        // From cell 0 to cell 1, and from cell 4 to cell 3; cell 5 is unknown.
+        stands = Some([0, 4].map(|from| planner.can_move(Cell::new(from, 0))));
+        ControlFlow::Break(())
+    });
+    assert_eq!((run.unwrap().ending, stands), (Ending::Interrupted, Some([true, false])));
 }
 
 #[test]
@@ -116,4 +171,18 @@ fn where_the_robot_stood_is_free_and_what_it_sees_is_measured() {
         run.map.grid().cells().filter(|c| run.map.is_known(*c)).map(|c| c.x).collect();
     assert_eq!(known, [0, 2]);
     assert!([0, 2].iter().all(|x| run.map.mode(Cell::new(*x, 0)) == 0.0));
+}
+
+#[test]
+fn cells_under_the_body_are_free_for_good() {
+    // With a radius of .8 m the body covers all of its cell, whose corners are .71 m away.
+    let mut mission = mission(6, &[0.0, 180.0], 1.0, budget(1, None));
+    mission.config.robot.radius = 0.8;
+    let pinned = |mission: &Mission| {
+        let (run, _) = run_of(mission, f64::INFINITY);
+        run.map.grid().cells().filter(|c| run.map.is_pinned(*c)).map(|c| c.x).collect::<Vec<_>>()
+    };
+    assert_eq!(pinned(&mission), [1]);
+    mission.config.planner.body_evidence = BodyEvidence::PlannerOnly;
+    assert_eq!(pinned(&mission), [0; 0]);
 }

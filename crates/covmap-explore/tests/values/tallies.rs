@@ -1,9 +1,10 @@
-//! How often every cell was measured.
+//! How often every cell was measured, and what a mission knows.
 
 use super::{close, map_of, mission};
 use covmap::Raster;
-use covmap_explore::{Limits, Tally};
+use covmap_explore::{Config, Limits, Mission, MissionError, Tally, TraceHeader};
 use covmap_sonar::{Range, Scan};
+use covmap_world::{Extent, Scenario, World};
 use nalgebra::Isometry2;
 
 #[test]
@@ -26,4 +27,32 @@ fn measurements_are_counted_until_a_cell_is_explored_and_in_all() {
     close(m.mean, 2.25, 1e-12);
     close(m.deviation, 1.299_038_1, 1e-6);
     assert_eq!((m.least, m.most), (0.0, 3.0));
+}
+
+#[test]
+fn a_header_tells_what_is_outside() {
+    let mut mission = mission(9, &[0.0], 3.0, Limits::default());
+    mission.outside = Raster::from_fn(mission.grid, |cell| [0, 3, 4, 8].contains(&cell.x));
+    let header = TraceHeader::new(&mission, "corridor", 7);
+    assert_eq!(header.inside, [(1, 3), (5, 8)]);
+    assert_eq!((header.seed, header.mission()), (7, mission));
+}
+
+#[test]
+fn a_mission_starts_where_the_robot_fits_and_ends_at_the_extent() {
+    let extent = Extent { width: 4.0, height: 3.0 };
+    let scenario = Scenario { name: "room".into(), extent, start: None, obstacles: vec![] };
+    let config = Config { resolution: 0.5, ..Config::b21r() };
+    let world = World::from_scenario(&scenario, config.sonar.surface).unwrap();
+    let at = |x: f64| {
+        let start = Isometry2::new([x, 1.0].into(), 0.0);
+        Mission::new(&world, &config, Some(start), Limits::default())
+    };
+    // The robot's radius is .27 m, the wall is at 0.
+    assert!(matches!(at(0.26), Err(MissionError::StartOccupied { .. })));
+    assert!(matches!(at(-0.1), Err(MissionError::StartOutside(..))));
+    // 8 × 6 cells of the grid, which has a margin, lie inside.
+    let outside = at(0.28).unwrap().outside;
+    assert_eq!(outside.values().iter().filter(|outside| !**outside).count(), 48);
+    assert!(outside.values().len() > 48);
 }

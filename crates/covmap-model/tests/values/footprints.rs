@@ -44,12 +44,12 @@ fn check(footprint: &Footprint, reach: f64, expected: [&str; 7]) {
 #[test]
 fn sectors_tile_the_plane_and_their_first_border_is_theirs() {
     // Axes at 0°, 90°, 180°, 270°: the borders are the diagonals, and a cell on one belongs to the
-    // beam that lies counter-clockwise of it. Within 3.2 m are (3, 1), √10, but not (3, 2), √13.
+    // beam that lies counter-clockwise of it. Exactly 3 m away is (3, 0), and (3, 1) is √10 m.
     let beams = [0.0, 90.0, 180.0, 270.0].map(|angle| beam(0.0, 0.0, angle));
     check(
         &footprint(&beams, sectors(45.0)),
-        3.2,
-        ["..111..", ".21111.", "2221100", "222.000", "2233000", ".33330.", "..333.."],
+        3.0,
+        ["...1...", ".21111.", ".22110.", "222.000", ".23300.", ".33330.", "...3..."],
     );
 }
 
@@ -96,4 +96,13 @@ fn a_reach_holds_what_is_exactly_so_far_away() {
     let ray = footprint(&[beam(0.0, 0.0, 0.0)], cones(0.0));
     let cells = |reach| covered(&ray, 0, reach).len();
     assert_eq!((cells(2.0), cells(1.999), cells(0.0)), (2, 1, 0));
+}
+
+#[test]
+fn a_ray_covers_no_cell_that_it_enters_beyond_its_reach() {
+    // At 19° it enters cell (1, 1) near its corner at (1.5, .5), after .5/sin 19° = 1.536 m; the
+    // centre is at √2 m.
+    let ray = footprint(&[beam(0.0, 0.0, 19.0)], cones(0.0));
+    let covers = |reach| covered(&ray, 0, reach).iter().any(|c| c.cell == at(1, 1));
+    assert_eq!([1.53, 1.54].map(covers), [false, true]);
 }

@@ -2,7 +2,7 @@
 
 use super::corridor::{Corridor, plain, two_bins};
 use covmap_plan::CellStatus::{Exhausted, Open, Outside, Resolved, Unreachable};
-use covmap_plan::Strategy;
+use covmap_plan::{PlannerParameters, Strategy};
 
 /// A robot that looks 2 m to the right along twelve cells, of which the last two lie outside. It
 /// does not know the cells 3, 5, 10 and 11.
@@ -60,4 +60,35 @@ fn what_is_hidden_behind_a_wall_is_out_of_reach() {
     assert_eq!([1, 3].map(|x| corridor.status(0, x)), [Resolved, Unreachable]);
     // From beyond the wall it is open.
     assert_eq!(corridor.status(2, 3), Open);
+}
+
+#[test]
+fn the_share_of_finished_cells_is_of_those_that_are_known() {
+    let mut corridor = corridor();
+    let share = |corridor: &Corridor| corridor.planner.share_finished(&corridor.map);
+    assert_eq!(share(&corridor), 1.0);
+    // Of nine known cells one is not resolved; then it is given up.
+    corridor.look(2, 3, 0.5);
+    assert!((share(&corridor) - 8.0 / 9.0).abs() < 1e-12);
+    (0..5).for_each(|_| corridor.look_in_vain(2));
+    assert_eq!(share(&corridor), 1.0);
+}
+
+#[test]
+fn what_no_measurement_touched_is_not_resolved() {
+    // ε = .7 is above ln 2, the entropy of an unknown cell.
+    let parameters = PlannerParameters { entropy_threshold: 0.7, ..plain(Strategy::Cl) };
+    let mut corridor = Corridor::new(6, &[0.0], &two_bins(2.0), &parameters);
+    corridor.free_but(&[4]);
+    assert_eq!((corridor.status(0, 4), corridor.candidates(0)), (Open, vec![2, 3]));
+    corridor.know(4, &[0.5, 0.5]);
+    assert_eq!((corridor.status(0, 4), corridor.candidates(0)), (Resolved, vec![]));
+}
+
+#[test]
+fn what_lies_outside_is_no_reason() {
+    let (model, parameters) = (two_bins(2.0), plain(Strategy::Cl));
+    let mut corridor = Corridor::build(6, &[0.0], &model, &parameters, 0.3, |x| x >= 4);
+    corridor.free_but(&[4, 5]);
+    assert_eq!(corridor.candidates(0), [0; 0]);
 }

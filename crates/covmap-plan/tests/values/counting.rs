@@ -1,7 +1,7 @@
 //! The strategies that count scans.
 
 use super::corridor::{Corridor, plain, two_bins};
-use covmap_plan::{CellStatus, PlannerParameters, Strategy};
+use covmap_plan::{CellStatus, PlannerParameters, StallRule, Strategy};
 use covmap_sonar::Range;
 
 /// A robot that looks 4 m to the right along six cells, of which all are free.
@@ -49,7 +49,9 @@ fn a_longer_beam_counts_less() {
 
 #[test]
 fn five_scans_in_a_row_that_miss_a_cell_give_it_up() {
-    let mut corridor = corridor(count(3.0, None), |_| ());
+    // Whatever the rule for entropies says.
+    let banded = StallRule::Banded { first: 4.0, closest: 0.5 };
+    let mut corridor = corridor(count(3.0, None), |p| p.stall_rule = banded);
     let miss = |corridor: &mut Corridor, times: usize| {
         (0..times).for_each(|_| corridor.observe(1, &[Range::Missing], &[]));
     };
@@ -72,4 +74,16 @@ fn counting_asks_for_no_spacing_and_knows_no_cap() {
     assert!(corridor.candidates(0).contains(&1));
     corridor.observe(1, &[Range::NoEcho], &[]);
     assert_eq!(statuses(&mut corridor), [Resolved; 4]);
+}
+
+#[test]
+fn a_cell_that_was_scanned_by_chance_is_no_reason_any_more() {
+    // Cell 3 looks like a wall, but a beam of 4 m passes it.
+    let mut corridor = corridor(count(1.0, None), |_| ());
+    corridor.know(3, &[0.001, 0.999]);
+    corridor.planner.stand_on(covmap::Cell::new(3, 0));
+    assert_eq!(corridor.candidates(0), [0, 1, 2, 3, 4]);
+    corridor.observe(1, &[Range::Echo(4.0)], &[]);
+    // Of cell 1 nobody knows yet.
+    assert_eq!(corridor.candidates(0), [0]);
 }

@@ -42,6 +42,7 @@ fn closest_location_minimises_the_travel_cost() {
         let decision = corridor.choose(6).unwrap();
         assert_eq!(decision.path, [Cell::new(7, 0)]);
         assert_eq!((decision.candidates, decision.passage.len()), (2, 0));
+        assert_eq!(decision.negative_gains, 0);
         let costs: Vec<f64> = decision.best.iter().map(|record| record.cost).collect();
         assert_eq!(costs, [1.0, 3.0]);
         // Where it is costs nothing.
@@ -110,6 +111,15 @@ fn a_view_point_nearer_than_the_spacing_to_a_scan_is_spent() {
     assert_eq!([2, 8].map(|x| corridor.status(5, x)), [CellStatus::Exhausted, CellStatus::Open]);
     corridor.look_in_vain(7);
     assert_eq!((corridor.candidates(5), corridor.target(5)), (vec![], -1));
+}
+
+#[test]
+fn a_robot_that_cannot_get_away_from_a_scan_measures_again() {
+    let parameters = PlannerParameters { scan_spacing: 2.0, ..plain(Strategy::Cl) };
+    let mut corridor = corridor_with(&parameters);
+    [4, 6].into_iter().for_each(|x| corridor.know(x, &[0.2, 0.8]));
+    corridor.look_in_vain(5);
+    assert_eq!(corridor.candidates(5), [5]);
 }
 
 #[test]

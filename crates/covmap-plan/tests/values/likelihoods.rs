@@ -2,12 +2,14 @@
 
 use super::corridor::{Corridor, plain};
 use super::{all_close, close};
+use covmap::{Cell, CoverageMap, Grid, Raster};
 use covmap_model::{FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel};
 use covmap_plan::{
-    BeamStencil, RangeLikelihood, Stencil, StencilCell, Strategy, range_likelihood, reflection,
+    BeamStencil, Planner, RangeLikelihood, Stencil, StencilCell, Strategy, range_likelihood,
+    reflection,
 };
 use covmap_sonar::{Beam, SonarRing};
-use nalgebra::Isometry2;
+use nalgebra::{Isometry2, Point2};
 
 /// A beam of two rings, of two cells each, with unequal weights. No echo covers all cells, and an
 /// echo all up to its ring.
@@ -57,10 +59,25 @@ fn cells_are_in_sight_of_a_beam_with_a_probability_of_at_least_one_half() {
 }
 
 #[test]
-fn the_weights_of_a_ring_are_the_angular_widths_of_its_cells() {
-    // Four beams in cells of 1 m; the first covers [−45°, 45°).
+fn no_echo_sees_as_far_as_it_reaches() {
+    // q_0 and q_1 of the two rings; how many cells both echoes and no echo cover.
+    let in_sight = |q: [f64; 2], echo_reach: [usize; 2], no_echo_reach| {
+        let beam = BeamStencil { echo_reach: echo_reach.to_vec(), no_echo_reach, ..beam() };
+        likelihood([q[0], q[0], q[1], q[1]], 0.0).cells_in_sight(&beam)
+    };
+    // P(1) = .6, or .4 and P(∅) = .6, which does not reach so far.
+    assert_eq!(in_sight([0.0, 0.6], [2, 4], 2), 4);
+    assert_eq!(in_sight([0.0, 0.4], [2, 4], 2), 2);
+    // P(1) = .28 and P(∅) = .42, which reaches farther, are .7 together.
+    assert_eq!(in_sight([0.3, 0.4], [2, 4], 5), 4);
+    // P(1) = .4 passes the two cells of no echo, with P(∅) = .4.
+    assert_eq!(in_sight([0.2, 0.5], [1, 4], 2), 2);
+}
+
+/// Four beams in cells of 1 m; the first covers [−45°, 45°).
+fn four_beams() -> (ModelParameters, SonarRing) {
     let angles = [0.0, 90.0, 180.0, 270.0f64];
-    let ring = angles.map(|degrees| Beam {
+    let beams = angles.map(|degrees| Beam {
         pose: Isometry2::rotation(degrees.to_radians()),
         half_angle: 0.8,
         min_range: 0.0,
@@ -74,7 +91,13 @@ fn the_weights_of_a_ring_are_the_angular_widths_of_its_cells() {
         footprint: FootprintRule::Sectors { half_angle: 45f64.to_radians() },
         ..ModelParameters::by_hand()
     };
-    let ring = SonarRing::new(ring.to_vec()).unwrap();
+    let ring = SonarRing::new(beams.to_vec()).unwrap();
+    (parameters, ring)
+}
+
+#[test]
+fn the_weights_of_a_ring_are_the_angular_widths_of_its_cells() {
+    let (parameters, ring) = four_beams();
     let stencil = Stencil::new(&SensorModel::new(&parameters, &ring, 1.0).unwrap(), 0.0);
     assert_eq!((stencil.ranges.as_slice(), stencil.outcomes()), (&[0.0, 1.0, 2.0, 3.0][..], 5));
     let beam = &stencil.beams[0];
@@ -93,17 +116,18 @@ fn the_weights_of_a_ring_are_the_angular_widths_of_its_cells() {
 
 #[test]
 fn what_reflects_is_the_most_likely_coverage() {
-    let mut corridor = corridor();
+    let mut corridor = corridor(4.0);
     corridor.know(1, &posterior(4));
-    let cell = |x| covmap::Cell::new(x, 0);
+    let cell = |x| Cell::new(x, 0);
     assert_eq!(reflection(&corridor.map, cell(1), 0.3), 0.4);
     assert_eq!(reflection(&corridor.map, cell(2), 0.3), 0.3);
     assert_eq!(reflection(&corridor.map, cell(9), 0.3), 0.0);
 }
 
-/// Five cells of eleven bins, and a ray of 4 m to the right.
-fn corridor() -> Corridor {
+/// Five cells of eleven bins, and a ray of 4 m to the right, or of `no_echo` [m] without an echo.
+fn corridor(no_echo: f64) -> Corridor {
     let mut model = super::corridor::two_bins(4.0);
+    model.no_echo.range = no_echo;
     (model.bins, model.sigma_out.base, model.sigma_in) = (11, 0.1, 0.2);
     Corridor::new(5, &[0.0], &model, &plain(Strategy::Cl))
 }
@@ -117,15 +141,50 @@ fn posterior(bin: usize) -> Vec<f64> {
 fn the_planner_sees_through_what_reflects_up_to_one_half() {
     // The cell 2 m ahead reflects .5, .6 or .7: beyond it .5, .4 or .3 of all outcomes are left.
     for (bin, farthest) in [(5, 4), (6, 2), (7, 2)] {
-        let mut corridor = corridor();
+        let mut corridor = corridor(4.0);
         corridor.know(2, &posterior(bin));
         let expected: Vec<(i32, f32)> =
             [(1, 1.0), (2, 2.0), (3, 3.0), (4, 4.0)][..farthest].to_vec();
         assert_eq!(corridor.in_sight(0), expected, "{bin}");
     }
     // Two cells of .3: .7 · .7 = .49 are left behind the second.
-    let mut corridor = corridor();
+    let mut corridor = corridor(4.0);
     corridor.know(1, &posterior(3));
     corridor.know(2, &posterior(3));
     assert_eq!(corridor.in_sight(0), [(1, 1.0), (2, 2.0)]);
+}
+
+#[test]
+fn the_planner_sees_without_an_echo_as_far_as_that_reaches() {
+    // As in `no_echo_sees_as_far_as_it_reaches`, an echo from k m covers k cells.
+    let in_sight = |no_echo, bins: &[(i32, usize)]| {
+        let mut corridor = corridor(no_echo);
+        bins.iter().for_each(|&(x, bin)| corridor.know(x, &posterior(bin)));
+        corridor.in_sight(0).len()
+    };
+    assert_eq!(in_sight(1.0, &[(3, 6)]), 3);
+    assert_eq!(in_sight(1.0, &[(3, 4)]), 1);
+    assert_eq!(in_sight(4.0, &[(2, 3), (3, 4)]), 3);
+    assert_eq!(in_sight(2.0, &[(1, 2), (3, 5)]), 2);
+}
+
+#[test]
+fn the_planner_weighs_the_cells_of_a_ring_by_their_angular_width() {
+    // Of the first ring, (1, 0) and (1, −1), one cell is a wall: .585786 or .414214 of the beam
+    // are hidden, which of equal weights would be ½.
+    let (parameters, stencil_ring) = four_beams();
+    let model = SensorModel::new(&parameters, &stencil_ring, 1.0).unwrap();
+    let in_sight = |wall: (i32, i32)| {
+        let grid = Grid::new(Point2::origin(), 1.0, 9, 9).unwrap();
+        let mut map = CoverageMap::new(grid, 11).unwrap();
+        let outside = Raster::filled(grid, false);
+        let plain = plain(Strategy::Cl);
+        let mut planner = Planner::new(&plain, &model, &outside, 0.3, 0.0).unwrap();
+        let change = map.multiply(Cell::new(4, 4).offset(wall.0, wall.1), &posterior(10));
+        let far = Point2::new(-99.0, -99.0);
+        planner.body_moved(&map, far, far, change.as_slice());
+        let beyond = grid.index(Cell::new(6, 4)).unwrap();
+        planner.cells_in_sight(Cell::new(4, 4)).iter().any(|(index, _)| *index == beyond)
+    };
+    assert_eq!([(1, 0), (1, -1)].map(in_sight), [false, true]);
 }

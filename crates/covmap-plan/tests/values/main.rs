@@ -9,6 +9,7 @@ mod counting;
 mod decisions;
 mod gains;
 mod likelihoods;
+mod passages;
 mod stalls;
 mod travel;
 mod windows;

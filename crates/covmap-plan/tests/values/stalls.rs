@@ -70,6 +70,39 @@ fn below_the_closest_distance_a_cell_is_exhausted() {
 }
 
 #[test]
+fn a_band_as_near_as_the_closest_distance_is_still_one() {
+    let mut corridor = corridor(StallRule::Banded { first: 6.0, closest: 1.5 });
+    corridor.look(1, CELL, 0.6);
+    (0..5).for_each(|_| corridor.look_in_vain(1));
+    (0..6).for_each(|_| corridor.look_in_vain(4));
+    assert_eq!(corridor.candidates(0), [6]);
+}
+
+#[test]
+fn no_band_goes_beyond_the_usable_range() {
+    // A wall 4 m from cell 0 is seen from there, and what is behind it, 5 m away, is no reason.
+    let mut model = two_bins(4.0);
+    (model.behind, model.no_echo.range) = (1.0, 1.0);
+    let mut parameters = plain(Strategy::Cl);
+    parameters.stall_rule = StallRule::Banded { first: 50.0, closest: 0.5 };
+    let mut corridor = Corridor::new(6, &[0.0], &model, &parameters);
+    corridor.free_but(&[4, 5]);
+    corridor.know(4, &[0.001, 0.999]);
+    assert_eq!(corridor.in_sight(0).last(), Some(&(5, 5.0)));
+    assert_eq!(corridor.candidates(0), [1, 2, 3]);
+}
+
+#[test]
+fn what_a_wall_hides_is_no_reason() {
+    let mut corridor = banded();
+    corridor.know(3, &[0.01, 0.99]);
+    assert_eq!(corridor.candidates(0), [0; 0]);
+    // The robot can drive over the cell that looks like a wall, having stood on it.
+    corridor.planner.stand_on(Cell::new(3, 0));
+    assert_eq!(corridor.candidates(0), [3, 4, 5, 6]);
+}
+
+#[test]
 fn the_next_band_is_half_of_the_nearest_of_the_stalled_scans() {
     let mut corridor = banded();
     corridor.look(1, CELL, 0.6);
@@ -131,6 +164,7 @@ fn the_literal_rule_looks_at_the_change_and_not_at_the_lowest() {
     let literal = || corridor(StallRule::Literal);
     // Changes of .01 up or down are none the less changes.
     assert_eq!(after(literal(), &[0.65, 0.64, 0.63, 0.62, 0.61, 0.65, 0.64]), ALL);
+    assert_eq!(after(literal(), &[0.61, 0.62, 0.63, 0.64, 0.65, 0.66]), ALL);
     // Changes of .0005.
     let falls: Vec<f64> = (1..=5).map(|i| 0.6 - f64::from(i) * 0.000_5).collect();
     assert_eq!(after(literal(), &falls[..4]), ALL);

@@ -53,6 +53,15 @@ fn the_next_window_opens_around_the_nearest_candidate_that_is_left() {
 }
 
 #[test]
+fn the_nearest_candidate_is_that_of_the_shortest_way() {
+    // From cell 13, cell 10 is nearer than 4: the window around 10 ends with cell 7.
+    let mut corridor = corridor(WINDOW, &[(12, 0.9), (3, 0.6), (9, 0.9)]);
+    assert_eq!(corridor.target(14), 11);
+    resolve(&mut corridor, 12);
+    assert_eq!(corridor.target(13), 8);
+}
+
+#[test]
 fn there_is_no_need_to_return_until_all_else_is_done() {
     let mut corridor = corridor(WINDOW, &[(3, 0.9), (9, 0.9)]);
     assert_eq!(corridor.target(2), 2);
