@@ -3,21 +3,22 @@
 use super::{all_close, close, mission};
 use covmap::Cell;
 use covmap_explore::{Ending, Event, Limits, Mission, Robot, Run, explore};
-use covmap_plan::{BodyEvidence, CellStatus};
+use covmap_plan::{BodyEvidence, CellStatus, Strategy};
 use covmap_sonar::Range;
 use covmap_world::Drive;
 use nalgebra::{Isometry2, Point2};
 use std::ops::ControlFlow;
 
-/// Nothing answers it, and it bumps into a wall at `wall` [m] with its front, .3 m ahead.
+/// Its sensors always read the same, and it bumps into a wall at `wall` [m] with its front, .3 m
+/// ahead.
 struct Told {
-    beams: usize,
+    readings: [Range; 2],
     wall: f64,
 }
 
 impl Robot for Told {
     fn sense(&mut self, _: &Isometry2<f64>) -> Vec<Range> {
-        vec![Range::NoEcho; self.beams]
+        self.readings.to_vec()
     }
 
     fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Drive {
@@ -26,14 +27,21 @@ impl Robot for Told {
     }
 }
 
+/// Nothing answers.
+const SILENT: [Range; 2] = [Range::NoEcho; 2];
+
 /// A run along six cells from the middle of the second, with rays of 1 m to both sides.
 fn run(wall: f64, limits: Limits) -> (Run, Vec<Event>) {
     run_of(&mission(6, &[0.0, 180.0], 1.0, limits), wall)
 }
 
 fn run_of(mission: &Mission, wall: f64) -> (Run, Vec<Event>) {
+    run_told(mission, Told { readings: SILENT, wall })
+}
+
+fn run_told(mission: &Mission, mut robot: Told) -> (Run, Vec<Event>) {
     let mut events = Vec::new();
-    let run = explore(mission, &mut Told { beams: 2, wall }, &mut |event, _| {
+    let run = explore(mission, &mut robot, &mut |event, _| {
         events.push(event.clone());
         ControlFlow::Continue(())
     });
@@ -139,11 +147,13 @@ fn to_stay_in_a_cell_is_to_go_to_its_centre() {
 
 #[test]
 fn where_the_robot_stood_in_a_run_it_can_stand_again() {
-    // When it has measured in cell 2, cells 1 and 3 turn out to look like walls. It was in one.
+    // From cell 0, where it starts, it drives over cell 1 to cell 2. When it has measured there,
+    // the cells 1 and 3 turn out to look like walls.
     let mut mission = mission(6, &[0.0, 180.0], 1.0, budget(30, None));
+    mission.start = Isometry2::new([0.5, 0.5].into(), 0.0);
     mission.config.planner.body_evidence = BodyEvidence::PlannerOnly;
     let mut stands = None;
-    let robot = &mut Told { beams: 2, wall: f64::INFINITY };
+    let robot = &mut Told { readings: SILENT, wall: f64::INFINITY };
     let run = explore(&mission, robot, &mut |event, view| {
         let Event::Scan { scan, .. } = event else { return ControlFlow::Continue(()) };
         if (scan.pose.translation.x - 2.5).abs() > 1e-9 {
@@ -185,4 +195,22 @@ fn cells_under_the_body_are_free_for_good() {
     assert_eq!(pinned(&mission), [1]);
     mission.config.planner.body_evidence = BodyEvidence::PlannerOnly;
     assert_eq!(pinned(&mission), [0; 0]);
+}
+
+#[test]
+fn candidates_that_lose_by_measuring_are_counted() {
+    // The echoes end early in the cells beside the robot, which look covered. It expects the next
+    // ones in their middle, where they would say that one half is covered.
+    let mut mission = mission(6, &[0.0, 180.0], 1.0, budget(6, None));
+    (mission.config.planner.strategy, mission.config.planner.entropy_threshold) =
+        (Strategy::Ig, 0.2);
+    let readings = [Range::Echo(0.6); 2];
+    let (run, events) = run_told(&mission, Told { readings, wall: f64::INFINITY });
+    let of = |e: &Event| match e {
+        Event::Decision { decision, .. } => decision.negative_gains,
+        _ => 0,
+    };
+    let counted: usize = events.iter().map(of).sum();
+    assert!(counted > 0);
+    assert_eq!(run.negative_gains, counted);
 }

@@ -9,8 +9,12 @@
 
 use super::{all_close, close, map_of, mission};
 use covmap::{Cell, CoverageMap, Raster};
-use covmap_explore::{Accuracy, CellCounts, Limits, Truth};
+use covmap_explore::{
+    Accuracy, CellCounts, Config, Limits, Mission, SimulatedRobot, Truth, explore,
+};
 use covmap_plan::CellStatus;
+use covmap_world::{Extent, Scenario, World};
+use std::ops::ControlFlow;
 
 fn map() -> CoverageMap {
     map_of(&[
@@ -101,4 +105,24 @@ fn the_certificate_is_counted_word_by_word() {
     let counts = CellCounts::of(&words);
     assert_eq!((counts.open, counts.resolved, counts.exhausted), (1, 2, 3));
     assert_eq!((counts.unreachable, counts.outside), (1, 1));
+}
+
+#[test]
+fn the_scored_cells_are_what_a_run_could_see_and_one_solid_layer_but_not_what_its_body_pinned() {
+    let extent = Extent { width: 3.6, height: 2.8 };
+    let scenario = Scenario { name: "room".into(), extent, start: None, obstacles: vec![] };
+    let config = Config { resolution: 0.2, ..Config::b21r() };
+    let world = World::from_scenario(&scenario, config.sonar.surface).unwrap();
+    let limits = Limits { max_scans: Some(3), ..Limits::default() };
+    let mission = Mission::new(&world, &config, None, limits).unwrap();
+    let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
+    let run = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(())).unwrap();
+    let truth = Truth::new(&world, &mission);
+    let scored = truth.scored_cells(&world, &mission, &run);
+    let pinned = mission.grid.cells().filter(|cell| run.map.is_pinned(*cell)).count();
+    let coverage = |cell: &Cell| *truth.coverage.get(*cell).unwrap();
+    let count = |solid: f64| scored.iter().filter(|cell| coverage(cell) == solid).count();
+    // 18 × 14 cells are free, and round them are 2 · (18 + 14) solid ones, that can be seen.
+    assert!(pinned > 0 && scored.iter().all(|cell| !run.map.is_pinned(*cell)));
+    assert_eq!((count(0.0), count(1.0)), (18 * 14 - pinned, 2 * (18 + 14)));
 }

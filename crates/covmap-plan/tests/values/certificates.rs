@@ -2,7 +2,7 @@
 
 use super::corridor::{Corridor, plain, two_bins};
 use covmap_plan::CellStatus::{Exhausted, Open, Outside, Resolved, Unreachable};
-use covmap_plan::{PlannerParameters, Strategy};
+use covmap_plan::{PlannerParameters, StallRule, Strategy};
 
 /// A robot that looks 2 m to the right along twelve cells, of which the last two lie outside. It
 /// does not know the cells 3, 5, 10 and 11.
@@ -67,11 +67,13 @@ fn the_share_of_finished_cells_is_of_those_that_are_known() {
     let mut corridor = corridor();
     let share = |corridor: &Corridor| corridor.planner.share_finished(&corridor.map);
     assert_eq!(share(&corridor), 1.0);
-    // Of nine known cells one is not resolved; then it is given up.
+    // Of nine known cells one is not resolved; then it is given up, and there is another one.
     corridor.look(2, 3, 0.5);
     assert!((share(&corridor) - 8.0 / 9.0).abs() < 1e-12);
     (0..5).for_each(|_| corridor.look_in_vain(2));
     assert_eq!(share(&corridor), 1.0);
+    corridor.know(5, &[0.8, 0.2]);
+    assert!((share(&corridor) - 9.0 / 10.0).abs() < 1e-12);
 }
 
 #[test]
@@ -91,4 +93,17 @@ fn what_lies_outside_is_no_reason() {
     let mut corridor = Corridor::build(6, &[0.0], &model, &parameters, 0.3, |x| x >= 4);
     corridor.free_but(&[4, 5]);
     assert_eq!(corridor.candidates(0), [0; 0]);
+}
+
+#[test]
+fn a_cell_in_sight_from_too_far_away_is_neither_open_nor_exhausted() {
+    // The robot gets no nearer than 4 m to cell 7, of which a stall from 6 m wants 3 m.
+    let mut parameters = plain(Strategy::Cl);
+    parameters.stall_rule = StallRule::Banded { first: 6.0, closest: 1.0 };
+    let mut corridor = Corridor::new(8, &[0.0], &two_bins(6.0), &parameters);
+    corridor.free_but(&[4, 7]);
+    assert_eq!(corridor.status(0, 7), Open);
+    corridor.look(1, 7, 0.6);
+    (0..5).for_each(|_| corridor.look_in_vain(1));
+    assert!(![Open, Exhausted, Resolved].contains(&corridor.status(0, 7)));
 }
