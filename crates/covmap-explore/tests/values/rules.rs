@@ -3,7 +3,7 @@
 use super::{all_close, close, mission};
 use covmap::Cell;
 use covmap_explore::{Ending, Event, Limits, Mission, Robot, Run, explore};
-use covmap_plan::{BodyEvidence, CellStatus, Strategy};
+use covmap_plan::{BodyEvidence, CellStatus, Reach, Strategy};
 use covmap_sonar::Range;
 use covmap_world::Drive;
 use nalgebra::{Isometry2, Point2};
@@ -83,7 +83,7 @@ fn after_a_bump_the_robot_goes_back_to_where_it_came_from() {
         |e| matches!(e, Event::Decision { decision, .. } if decision.path.contains(&Cell::new(3, 0))),
     );
     assert!(!entered);
-    assert_eq!(run.bumps, 1);
+    assert_eq!(run.bumped_at, [*at]);
     assert!(run.certificate.values().iter().all(|status| *status != CellStatus::Open));
 }
 
@@ -166,11 +166,11 @@ fn where_the_robot_stood_in_a_run_it_can_stand_again() {
             let far = Point2::new(-99.0, -99.0);
             planner.body_moved(&map, far, far, change.as_slice());
         }
-        // From cell 0 to cell 1, and from cell 4 to cell 3; cell 5 is unknown.
-        stands = Some([0, 4].map(|from| planner.can_move(Cell::new(from, 0))));
+        let reach = planner.reach(Cell::new(0, 0));
+        stands = Some([1, 2, 3].map(|x| *reach.get(Cell::new(x, 0)).unwrap() == Reach::Reached));
         ControlFlow::Break(())
     });
-    assert_eq!((run.unwrap().ending, stands), (Ending::Interrupted, Some([true, false])));
+    assert_eq!((run.unwrap().ending, stands), (Ending::Interrupted, Some([true, true, false])));
 }
 
 #[test]

@@ -8,7 +8,7 @@
 //! ```
 
 use super::{all_close, close, map_of, mission};
-use covmap::{Cell, CoverageMap, Raster};
+use covmap::{Cell, CoverageMap, Raster, Steps};
 use covmap_explore::{
     Accuracy, CellCounts, Config, Limits, Mission, SimulatedRobot, Truth, explore,
 };
@@ -34,6 +34,8 @@ fn truth(map: &CoverageMap) -> Truth {
         coverage: Raster::from_values(grid, coverage).unwrap(),
         reachable: Raster::from_fn(grid, |cell| cell.x < 3),
         first_solid: Raster::from_fn(grid, |cell| cell.x >= 3),
+        first_smooth: Raster::from_fn(grid, |cell| cell.x == 4),
+        steps: Steps::between(&grid, |_| true),
         observable: Raster::filled(grid, true),
     }
 }
@@ -47,6 +49,8 @@ fn a_map_is_scored_against_the_truth() {
     close(score.completeness, 1.0 / 3.0, 1e-12);
     close(score.phantom, 1.0 / 3.0, 1e-12);
     close(score.wall_recall, 0.5, 1e-12);
+    // The rough one is found, the smooth one is not.
+    assert_eq!((score.wall_recall_rough, score.wall_recall_smooth), (Some(1.0), Some(0.0)));
     // (0 + 1 + .3 + .5 + 1)/5 and (.075 + .8 + .3 + .5 + .7)/5
     close(score.mae_mode, 0.56, 1e-12);
     close(score.mae_mean, 0.475, 1e-6);
@@ -68,10 +72,13 @@ fn a_cell_is_free_up_to_a_fifth_and_a_wall_from_one_half() {
         coverage: Raster::filled(*map.grid(), 0.0),
         reachable: everywhere.clone(),
         first_solid: everywhere.clone(),
+        first_smooth: Raster::filled(*map.grid(), false),
+        steps: Steps::between(map.grid(), |_| true),
         observable: everywhere,
     };
     let score = truth.score(&map, &[]);
     all_close(&[score.completeness, score.phantom, score.wall_recall], &[0.25; 3], 1e-12);
+    assert_eq!((score.wall_recall_rough, score.wall_recall_smooth), (Some(0.25), None));
     assert_eq!((score.mae_mode, score.mean_log_likelihood), (0.0, 0.0));
 }
 
@@ -100,11 +107,12 @@ fn errors_are_told_by_the_class_of_the_cells() {
 
 #[test]
 fn the_certificate_is_counted_word_by_word() {
-    use CellStatus::{Exhausted, Open, Outside, Resolved, Unreachable};
-    let words = [Open, Resolved, Resolved, Outside, Exhausted, Exhausted, Exhausted, Unreachable];
+    use CellStatus::{Exhausted, NotSeen, Open, Outside, Resolved, Unreachable};
+    let words =
+        [Open, Resolved, Resolved, Outside, Exhausted, Exhausted, Exhausted, Unreachable, NotSeen];
     let counts = CellCounts::of(&words);
     assert_eq!((counts.open, counts.resolved, counts.exhausted), (1, 2, 3));
-    assert_eq!((counts.unreachable, counts.outside), (1, 1));
+    assert_eq!((counts.unreachable, counts.not_seen, counts.outside), (1, 1, 1));
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What becomes of every cell: the first word that applies.
 
 use super::corridor::{Corridor, plain, two_bins};
-use covmap_plan::CellStatus::{Exhausted, Open, Outside, Resolved, Unreachable};
+use covmap_plan::CellStatus::{Exhausted, NotSeen, Open, Outside, Resolved, Unreachable};
 use covmap_plan::{PlannerParameters, StallRule, Strategy};
 
 /// A robot that looks 2 m to the right along twelve cells, of which the last two lie outside. It
@@ -17,12 +17,15 @@ fn corridor() -> Corridor {
 fn every_cell_has_one_word() {
     let mut corridor = corridor();
     let statuses: Vec<_> = (0..12).map(|x| corridor.status(0, x)).collect();
-    // The robot gets as far as cell 2, from where it sees 3 and 4; cell 5 is out of its sight, but
+    // The robot gets as far as cell 2, from where it sees 3 and 4. Cell 5 may come into sight later;
     // what is resolved is so from anywhere.
     let mut expected = [Resolved; 12];
-    (expected[3], expected[5]) = (Open, Unreachable);
+    (expected[3], expected[5]) = (Open, NotSeen);
     (expected[10], expected[11]) = (Outside, Outside);
     assert_eq!(statuses, expected);
+    // When nothing is open, or behind a wall, it does not.
+    corridor.know(3, &[0.001, 0.999]);
+    assert_eq!(corridor.status(0, 5), Unreachable);
     // What is known outside is outside none the less.
     corridor.know(10, &[0.999, 0.001]);
     assert_eq!(corridor.status(0, 10), Outside);

@@ -2,14 +2,14 @@
 
 use super::close;
 use super::corridor::{Corridor, plain, two_bins};
-use covmap::{Cell, Grid};
-use covmap_plan::{BodyEvidence, PlannerParameters, Strategy, travel_costs};
+use covmap::{Cell, Grid, Steps};
+use covmap_plan::{BodyEvidence, PlannerParameters, Reach, Strategy, travel_costs};
 use nalgebra::Point2;
 
 #[test]
 fn travel_costs_are_metres_over_straight_and_diagonal_steps() {
     let grid = Grid::new(Point2::origin(), 0.2, 4, 3).unwrap();
-    let costs = travel_costs(&grid, Cell::new(0, 0), |_| true);
+    let costs = travel_costs(Steps::between(&grid, |_| true), Cell::new(0, 0));
     let cost = |x, y| costs.cost(grid.index(Cell::new(x, y)).unwrap()).unwrap();
     // (1 + 2 √2) · .2, 3 · .2, 2 √2 · .2
     close(cost(3, 2), 0.765_685_424_9, 1e-10);
@@ -23,7 +23,7 @@ fn travel_costs_are_metres_over_straight_and_diagonal_steps() {
 fn of_two_shortest_ways_the_one_whose_last_step_comes_from_the_nearest_cell() {
     // To (2, 1) by (1, 0) at 1, or by (1, 1) at √2.
     let grid = Grid::new(Point2::origin(), 1.0, 4, 3).unwrap();
-    let costs = travel_costs(&grid, Cell::new(0, 0), |_| true);
+    let costs = travel_costs(Steps::between(&grid, |_| true), Cell::new(0, 0));
     let path = |x, y| costs.path_to(Cell::new(x, y)).unwrap();
     assert_eq!(path(2, 1), [Cell::new(1, 0), Cell::new(2, 1)]);
     assert_eq!(path(2, 2), [Cell::new(1, 1), Cell::new(2, 2)]);
@@ -66,11 +66,13 @@ fn a_blocking_cell_is_kept_off_by_the_robots_radius() {
         corridor.candidates(0)
     };
     assert_eq!(stands(1.0), [0]);
-    let reached = |radius| {
-        let mut corridor = corridor(|_| (), 10, radius);
-        corridor.planner.can_move(Cell::new(0, 0)) && corridor.candidates(0).is_empty()
+    let reach = |radius| {
+        let reach = corridor(|_| (), 10, radius).planner.reach(Cell::new(0, 0));
+        [1, 2, 3, 5].map(|x| *reach.get(Cell::new(x, 0)).unwrap())
     };
-    assert_eq!([1.0, 1.1].map(reached), [true, false]);
+    use Reach::{Covered, CutOff, Reached, Unknown};
+    assert_eq!(reach(1.0), [Reached, Covered, CutOff, Unknown]);
+    assert_eq!(reach(1.1), [Covered, Covered, Covered, Unknown]);
 }
 
 #[test]
@@ -108,8 +110,45 @@ fn an_unknown_cell_is_open_once_the_body_was_over_its_centre() {
 fn a_cell_that_was_bumped_into_is_blocked_for_good() {
     let mut corridor = corridor(|_| (), 0, 0.3);
     assert_eq!(corridor.candidates(0), [4]);
-    corridor.planner.bump_at(Cell::new(2, 0));
+    corridor.planner.bump(Cell::new(1, 0), Cell::new(2, 0));
     assert_eq!(corridor.candidates(0), [0; 0]);
     corridor.know(2, &[0.99, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001]);
     assert_eq!(corridor.candidates(0), [0; 0]);
+}
+
+/// Which of the cells 0 … 3 a robot reaches from a cell, if cell 2 looks like a wall.
+fn reached(corridor: &Corridor, from: i32) -> [bool; 4] {
+    let reach = corridor.planner.reach(Cell::new(from, 0));
+    [0, 1, 2, 3].map(|x| *reach.get(Cell::new(x, 0)).unwrap() == Reach::Reached)
+}
+
+#[test]
+fn a_step_that_the_body_has_driven_is_possible_for_ever_in_both_directions() {
+    for body_evidence in [BodyEvidence::Belief, BodyEvidence::Off] {
+        let mut corridor = corridor(|p| p.body_evidence = body_evidence, 10, 0.3);
+        let [a, wall, b] = [1, 2, 3].map(|x| Cell::new(x, 0));
+        assert_eq!(reached(&corridor, 0), [true, true, false, false]);
+        corridor.planner.drove(a, wall);
+        corridor.planner.drove(wall, b);
+        assert_eq!(reached(&corridor, 0), [true; 4], "{body_evidence:?}");
+        assert_eq!(reached(&corridor, 3), [true; 4], "{body_evidence:?}");
+        corridor
+            .know(2, &[0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.99, 0.001, 0.001]);
+        assert_eq!(reached(&corridor, 3), [true; 4], "{body_evidence:?}");
+    }
+}
+
+#[test]
+fn a_bump_closes_its_step_and_the_cell_unless_the_robot_stood_there() {
+    let bump = |stood: bool| {
+        let mut corridor = corridor(|_| (), 0, 0.3);
+        assert_eq!(reached(&corridor, 0), [true; 4]);
+        if stood {
+            corridor.planner.stand_on(Cell::new(2, 0));
+        }
+        corridor.planner.bump(Cell::new(1, 0), Cell::new(2, 0));
+        [reached(&corridor, 0), reached(&corridor, 3)]
+    };
+    assert_eq!(bump(false), [[true, true, false, false], [false, false, false, true]]);
+    assert_eq!(bump(true), [[true, true, false, false], [false, false, true, true]]);
 }
