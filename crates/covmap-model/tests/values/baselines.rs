@@ -3,11 +3,11 @@
 use super::{all_close, at, close, grid, model, parameters, scan};
 use covmap::{Cell, CoverageMap, Raster};
 use covmap_model::{
-    Counting, OccupancyGrid, OccupancyParameters, ScanCounts, cells_under_body, integrate_body,
-    intercepted,
+    Body, Counting, OccupancyGrid, OccupancyParameters, ScanCounts, cells_under_body,
+    integrate_body, intercepted,
 };
 use covmap_sonar::Range;
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 
 /// The cells that a reading intercepts, by how many metres they are ahead.
 fn hit(range: Range) -> Vec<i32> {
@@ -126,4 +126,38 @@ fn cells_entirely_under_the_body_are_free() {
     assert_eq!(freed(0.0, 1.59), cross);
     // Along 1 m the cross is one cell longer.
     assert_eq!(freed(1.0, 1.59).len(), 8);
+}
+
+/// The posteriors of the two cells ahead of a body that fills the two cells behind, side by side,
+/// and touched something with the same share of its front in both.
+fn touched(low: [f64; 3], high: [f64; 3]) -> [[f64; 3]; 2] {
+    let grid = covmap::Grid::new(Point2::origin(), 1.0, 2, 2).unwrap();
+    let mut map = CoverageMap::new(grid, 3).unwrap();
+    let mut body = Body::new(grid, 0.9);
+    [0, 1].into_iter().for_each(|y| {
+        map.pin_free(Cell::new(0, y));
+    });
+    map.multiply(Cell::new(1, 0), &low);
+    map.multiply(Cell::new(1, 1), &high);
+    body.touched(&mut map, Point2::new(0.49, 1.0), Vector2::x());
+    [0, 1].map(|y| {
+        let mut p = [0.0; 3];
+        map.read_posterior(Cell::new(1, y), &mut p);
+        p
+    })
+}
+
+#[test]
+fn a_contact_says_that_one_of_the_cells_ahead_is_covered() {
+    // Means .15 and .7: p(c) ∝ h(c) · (c + .7) and h(c) · (c + .15).
+    //   [.8 .1 .1] × [.7 1.2 1.7] = [.56 .12 .17], /.85
+    //   [.2 .2 .6] × [.15 .65 1.15] = [.03 .13 .69], /.85
+    let [low, high] = touched([0.8, 0.1, 0.1], [0.2, 0.2, 0.6]);
+    all_close(&low, &[0.658_823_5, 0.141_176_5, 0.2], 1e-6);
+    all_close(&high, &[0.035_294_1, 0.152_941_2, 0.811_764_7], 1e-6);
+    // What both say is free leaves .1/3 to each coverage at least, of [1 ε ε] that is
+    // [1 .0333 .0333]/1.0667 with the mean .046875; then × [.046875 .546875 1.046875].
+    let [low, high] = touched([1.0, 1e-6, 1e-6], [1.0, 1e-6, 1e-6]);
+    all_close(&low, &high, 1e-6);
+    all_close(&low, &[0.468_75, 0.182_291_7, 0.348_958_3], 1e-4);
 }
