@@ -161,7 +161,7 @@ mod tests {
         let mut runs = made_up(&rows);
         runs.runs.iter_mut().take(cut_short).for_each(|run| run.cut_short = true);
         let dir = tempfile::tempdir().unwrap();
-        let output = Output::create(dir.path()).unwrap();
+        let output = Output::create(dir.path(), covmap_io::Replace::Same).unwrap();
         write(&output, "figure7", "Fig. 7", &[("a", &runs)]).unwrap();
         let table = std::fs::read_to_string(output.path("figure7.csv")).unwrap();
         let mut lines = table.lines();

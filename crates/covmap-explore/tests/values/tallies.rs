@@ -35,7 +35,7 @@ fn a_header_tells_what_is_outside() {
     mission.outside = Raster::from_fn(mission.grid, |cell| [0, 3, 4, 8].contains(&cell.x));
     let header = TraceHeader::new(&mission, "corridor", 7);
     assert_eq!(header.inside, [(1, 3), (5, 8)]);
-    assert_eq!((header.seed, header.mission()), (7, mission));
+    assert_eq!((header.seed, header.mission().unwrap()), (7, mission));
 }
 
 #[test]

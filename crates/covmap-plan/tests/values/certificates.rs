@@ -66,17 +66,17 @@ fn what_is_hidden_behind_a_wall_is_out_of_reach() {
 }
 
 #[test]
-fn the_share_of_finished_cells_is_of_those_that_are_known() {
+fn open_cells_are_those_that_are_known_and_not_finished() {
     let mut corridor = corridor();
-    let share = |corridor: &Corridor| corridor.planner.share_finished(&corridor.map);
-    assert_eq!(share(&corridor), 1.0);
-    // Of nine known cells one is not resolved; then it is given up, and there is another one.
+    let open = |corridor: &Corridor| corridor.planner.open_cells(&corridor.map);
+    assert_eq!(open(&corridor), 0);
+    // One is not resolved; then it is given up, and there is another one.
     corridor.look(2, 3, 0.5);
-    assert!((share(&corridor) - 8.0 / 9.0).abs() < 1e-12);
+    assert_eq!(open(&corridor), 1);
     (0..5).for_each(|_| corridor.look_in_vain(2));
-    assert_eq!(share(&corridor), 1.0);
+    assert_eq!(open(&corridor), 0);
     corridor.know(5, &[0.8, 0.2]);
-    assert!((share(&corridor) - 9.0 / 10.0).abs() < 1e-12);
+    assert_eq!(open(&corridor), 1);
 }
 
 #[test]
