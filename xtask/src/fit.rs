@@ -84,7 +84,7 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
         file: &arguments.file,
         seed: file.seed,
         weighting: file.weighting,
-        interrupted: interrupt.is_pressed(),
+        interrupted: stopped,
         training: compare("training", &training)?,
         held_out_difference: paired(&held_out, file.weighting),
         held_out,

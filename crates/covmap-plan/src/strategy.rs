@@ -73,7 +73,7 @@ impl Strategy {
         match *self {
             Strategy::Cl | Strategy::Ig => Ok(()),
             Strategy::IgWin { radius } => number("the radius of IG_WIN", radius, 0.1, 1e4),
-            Strategy::IgCl { alpha } => number("the weight α of IG_CL", alpha, 0.0, 1e6),
+            Strategy::IgCl { alpha } => number("the weight α of IG_CL", alpha, 0.0, 1e9),
             Strategy::Count { times, half_distance } => {
                 number("the count of COUNT", times, 1e-3, 1e4)?;
                 number("the half distance of COUNT", half_distance.unwrap_or(1.0), 0.1, 1e3)
