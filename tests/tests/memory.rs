@@ -47,7 +47,6 @@ fn the_estimate_of_memory_is_near_to_what_is_taken() {
     for (side, resolution, sensors, strategy) in [
         (300, 0.1, 24, Strategy::Cl),
         (700, 0.1, 24, Strategy::Ig),
-        (20, 0.03, 360, Strategy::Ig),
         (1200, 0.2, 24, Strategy::IgCl { alpha: 0.3 }),
     ] {
         let [taken, estimate] = taken(side, resolution, sensors, strategy);
