@@ -4,11 +4,13 @@ mod bench;
 mod experiments;
 mod files;
 mod memory;
+mod safe_map;
 mod values;
 
 pub(crate) use bench::{Bench, Rows};
 pub(crate) use experiments::{Experiments, Figure, Paper, Table};
 pub(crate) use files::{Force, Log, Model, Truth};
+pub(crate) use safe_map::SafeMap;
 
 use crate::campaign::{Shard, VERSION};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -33,7 +35,7 @@ The folder that is written:
   summary.json              the numbers of the run
   trace.jsonl               every scan and every decision, a line each
   belief.bin                the whole posterior of every cell
-  map.pgm, map.yaml         the map for ROS map_server
+  map.pgm, map.yaml         the map for ROS map_server: free where that is certain
   coverage.png              the most likely coverage, with the path
   entropy.png               what is left uncertain
   truth.png                 the exact coverage of every cell
@@ -75,7 +77,7 @@ more than 1 m, nothing is known of the way.
 The folder that is written, as by `explore`:
   summary.json              the numbers of the map
   belief.bin                the whole posterior of every cell
-  map.pgm, map.yaml         the map for ROS map_server
+  map.pgm, map.yaml         the map for ROS map_server: free where that is certain
   coverage.png              the most likely coverage, with the path
   entropy.png               what is left uncertain
   occupancy.png             the log-odds occupancy grid of the same scans
@@ -243,7 +245,7 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 pub(crate) struct Explore {
-    /// A scenario (.ron), or a map of ROS map_server (.yaml with its .pgm)
+    /// A scenario (.ron), or a map of ROS map_server (.yaml with its .pgm or .png)
     pub(crate) world: PathBuf,
     /// Robot, sonar, sensor model and planner [default: configs/b21r.ron, built in]
     #[arg(long, value_name = "FILE")]
@@ -273,6 +275,8 @@ pub(crate) struct Explore {
     /// the fastest of this machine]
     #[arg(long, value_name = "KIND")]
     pub(crate) registers: Option<WidestRegisters>,
+    #[command(flatten)]
+    pub(crate) safe_map: SafeMap,
     /// Where the results go [default: out/WORLD-STRATEGY-SEED, and
     /// what else was typed, as in out/lab-IG-1-r0.2]
     #[arg(long, value_name = "DIR")]
@@ -346,6 +350,8 @@ pub(crate) struct Map {
     /// ... or turned by so many degrees
     #[arg(long, value_name = "DEG", value_parser = every_degrees, default_value = "5")]
     pub(crate) every_degrees: f64,
+    #[command(flatten)]
+    pub(crate) safe_map: SafeMap,
     /// Where the results go [default: out/LOG-SENSOR, and what else was
     /// typed, as in out/test1-laser-r0.05]
     #[arg(long, value_name = "DIR")]

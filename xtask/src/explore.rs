@@ -5,11 +5,13 @@ use crate::campaign::Digest;
 use crate::interrupt::{self, Interrupt};
 use crate::progress::Progress;
 use crate::trace_file::TraceWriter;
+use crate::world_file::{self, Remarks, WorldFile};
 use crate::{input, output, results, say};
 use anyhow::Result;
 use covmap_explore::{
     Config, CutOff, Ending, Limits, Mission, Run, SimulatedRobot, Summary, TraceHeader, explore,
 };
+use covmap_io::{MapCounts, MapThresholds};
 use covmap_world::World;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -21,6 +23,8 @@ pub(crate) struct Task {
     pub(crate) world: World,
     pub(crate) mission: Mission,
     pub(crate) seed: u64,
+    /// When a cell of the map for other software is free or occupied.
+    pub(crate) thresholds: MapThresholds,
 }
 
 pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
@@ -28,11 +32,14 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
     if let Some(widest) = arguments.registers {
         widest.limit();
     }
-    let task = task(arguments)?;
+    let (task, remarks) = task(arguments)?;
     let inputs = [Some(&arguments.world), arguments.config.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     let run = run_line(arguments, &task)?;
     let folder = output::folder(&folder_name(arguments, &task)?, &run, arguments.force, &inputs)?;
+    if !arguments.quiet {
+        remarks.say();
+    }
     let mut progress = Progress::new(arguments.quiet);
     let mut trace = TraceWriter::create(&folder.path("trace.jsonl"))?;
     let begun = Instant::now();
@@ -41,26 +48,28 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
     let seconds = begun.elapsed().as_secs_f64();
     let hash = trace.finish(&run.map)?;
     progress.say("drawing and scoring the map …");
-    let summary = results::write(&folder, &task, &run, seconds, hash)?;
+    let (summary, counts) = results::write(&folder, &task, &run, seconds, hash)?;
     let written = folder.finish()?;
     progress.finish();
     if !arguments.quiet {
-        report(&summary, &written);
+        report(&summary, &counts, &written);
     }
     Ok(ExitCode::from(exit_code(run.ending)))
 }
 
-fn task(arguments: &Explore) -> Result<Task> {
+fn task(arguments: &Explore) -> Result<(Task, Remarks)> {
     let (config, name) = input::config(arguments.config.as_deref())?;
     let config = overridden(config, arguments);
-    let world = input::world(&arguments.world, config.sonar.surface)?;
+    let read = world_file::read(&arguments.world, config.sonar.surface)?;
+    let WorldFile { world, remarks } = read;
     let limits = Limits {
         while_driving: arguments.while_driving,
         max_scans: arguments.max_scans.map(|most| most.get()),
     };
     let places = ((&world, arguments.world.as_path()), (&config, name.as_path()));
     let mission = input::mission(places.0, places.1, arguments.start, limits)?;
-    Ok(Task { world, mission, seed: arguments.seed })
+    let thresholds = arguments.safe_map.thresholds(&mission.config.planner);
+    Ok((Task { world, mission, seed: arguments.seed, thresholds }, remarks))
 }
 
 /// The configuration with what was typed instead of what the file says.
@@ -103,7 +112,7 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
 
 /// Which run it is: what the trace begins with, and the world.
 fn run_line(arguments: &Explore, task: &Task) -> Result<String> {
-    let Task { world, mission, seed } = task;
+    let Task { world, mission, seed, .. } = task;
     let strategy = &mission.config.planner.strategy;
     let words = format!("explore {}, {strategy}, seed {seed}", world.name());
     let header = TraceHeader::new(mission, world.name(), *seed);
@@ -120,7 +129,7 @@ fn watch(
     progress: &mut Progress,
     interrupt: &Interrupt,
 ) -> Result<Run> {
-    let Task { world, mission, seed } = task;
+    let Task { world, mission, seed, .. } = task;
     trace.header(&TraceHeader::new(mission, world.name(), *seed))?;
     let mut robot = SimulatedRobot::new(world, &mission.config, *seed)?;
     let mut failed = None;
@@ -159,7 +168,7 @@ pub(crate) fn in_words(ending: Ending) -> &'static str {
 const LEGEND: &str = "  (exhausted: still uncertain, and measuring helps no longer; wall recall: the \
                       share of the walls in sight that the map has; docs/guide.md#reading-the-summary)";
 
-fn report(summary: &Summary, written: &Path) {
+fn report(summary: &Summary, counts: &MapCounts, written: &Path) {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     say::line(format!("{}, {}: {}", summary.world, summary.strategy, in_words(summary.ending)));
     say::line(format!(
@@ -190,6 +199,7 @@ fn report(summary: &Summary, written: &Path) {
     if summary.cut_off.cells > 0 {
         say::line(format!("  {}", cut_off(&summary.cut_off, summary.resolution)));
     }
+    say::line(format!("  {}", results::map_line(counts)));
     say::line(LEGEND);
     say::line(format!("  {}", written.display()));
 }

@@ -4,13 +4,14 @@ use crate::input::{self, about};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::recorded::Recorded;
+use crate::world_file;
 use anyhow::{Result, bail};
 use covmap_explore::{Config, Limits, Mission, SimulatedRobot, Truth, explore};
 use covmap_fit::{Axis, Example, Weighting};
 use covmap_io::read_ron;
 use covmap_plan::Strategy;
 use covmap_sonar::SonarRing;
-use covmap_world::{Scenario, World};
+use covmap_world::World;
 use rayon::prelude::*;
 use serde::Deserialize;
 use std::ops::ControlFlow;
@@ -153,7 +154,7 @@ impl Simulated {
         if !moves.iter().all(|v| v.is_finite()) || self.shift.0 < 0.0 || self.shift.1 < 0.0 {
             bail!("{}: turn and shift must be finite, the shift not negative", path.display());
         }
-        let scenario: Scenario = read_ron(&file)?;
+        let scenario = world_file::scenario(&file)?;
         let surface = config.sonar.surface;
         let world = input::moved(&scenario, self.turn, self.shift, (&file, surface))?;
         let mut config = config.clone();

@@ -1,10 +1,11 @@
 //! Worlds and configurations from files.
 
 use crate::memory;
+use crate::world_file;
 use anyhow::{Result, anyhow, bail};
 use covmap::{Grid, Raster};
 use covmap_explore::{Config, ConfigError, Limits, Mission, MissionError};
-use covmap_io::{load_map_server, parse_ron, read_ron};
+use covmap_io::{parse_ron, read_ron};
 use covmap_model::SensorModel;
 use covmap_plan::{Planner, PlannerError};
 use covmap_world::{Scenario, Surface, World};
@@ -61,21 +62,7 @@ fn config_or(file: Option<&Path>, (name, text): (&str, &str)) -> Result<(Config,
 /// The world in a scenario or in a map of map_server. What a file does not say about
 /// surfaces is `surface`.
 pub(crate) fn world(file: &Path, surface: Surface) -> Result<World> {
-    let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
-    match extension.as_str() {
-        "ron" => {
-            let scenario: Scenario = read_ron(file)?;
-            World::from_scenario(&scenario, surface).map_err(about(file))
-        }
-        "yaml" | "yml" => {
-            let solid = load_map_server(file)?.solid();
-            let name = file.file_stem().unwrap_or_default().to_string_lossy();
-            World::from_raster(&name, &solid, surface).map_err(about(file))
-        }
-        _ => {
-            bail!("{}: a world is a scenario (.ron) or a map of map_server (.yaml)", file.display())
-        }
-    }
+    Ok(world_file::read(file, surface)?.world)
 }
 
 /// The world of a scenario in a file, turned \[rad\] and shifted \[m\].

@@ -14,6 +14,7 @@ mod explain_picture;
 mod explore;
 mod figure;
 mod figures;
+mod file_kind;
 mod fit;
 mod fit_charts;
 mod fit_file;
@@ -38,6 +39,7 @@ mod survey;
 mod trace_file;
 mod trail;
 mod truth;
+mod world_file;
 
 use anyhow::anyhow;
 use arguments::{Arguments, Command};

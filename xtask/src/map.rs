@@ -11,11 +11,12 @@ use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_explore::Config;
 use covmap_io::log::{LogOptions, Sensor, Skipped};
-use covmap_io::{OutputFolder, write_json};
+use covmap_io::{MapCounts, OutputFolder, write_json};
 use covmap_model::{Footprint, FootprintRule, SensorModel};
 use covmap_plan::BodyEvidence;
 use covmap_sonar::{Beam, SonarRing};
 use serde::Serialize;
+use std::iter::once;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -81,11 +82,12 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     progress.say("drawing the map …");
     let seconds = begun.elapsed().as_secs_f64();
     let summary = summary(arguments, &survey, &mapper, seconds);
-    write(&folder, &mapper, &summary, config.planner.entropy_threshold)?;
+    let counts = write(&folder, &mapper, &summary, (arguments, &config))?;
     let written = folder.finish()?;
     progress.finish();
     if !arguments.quiet {
-        report(arguments, &summary, remark.as_deref(), &written);
+        let remarks: Vec<String> = once(results::map_line(&counts)).chain(remark).collect();
+        report(arguments, &summary, &remarks, &written);
     }
     Ok(if mapper.stopped { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
 }
@@ -246,19 +248,20 @@ fn write(
     folder: &OutputFolder,
     mapper: &Mapper,
     summary: &MapSummary,
-    explored: f64,
-) -> Result<()> {
-    results::write_map(folder, &mapper.map)?;
-    let pictures = MapPictures { mapper, summary, explored };
+    (arguments, config): (&Map, &Config),
+) -> Result<MapCounts> {
+    let thresholds = arguments.safe_map.thresholds(&config.planner);
+    let counts = results::write_map(folder, &mapper.map, &thresholds)?;
+    let pictures = MapPictures { mapper, summary, explored: config.planner.entropy_threshold };
     pictures.coverage().save(folder.path("coverage.png"))?;
     pictures.entropy().save(folder.path("entropy.png"))?;
     pictures.occupancy().save(folder.path("occupancy.png"))?;
     // Last: whoever finds it finds all the others.
     write_json(folder.path("summary.json"), summary)?;
-    Ok(())
+    Ok(counts)
 }
 
-fn report(arguments: &Map, summary: &MapSummary, remark: Option<&str>, written: &Path) {
+fn report(arguments: &Map, summary: &MapSummary, remarks: &[String], written: &Path) {
     let MapSummary { world, sensor, frames, standing, scans, jumps, .. } = summary;
     say::line(format!("{world}, {sensor}: a map of {scans} scans"));
     say::line(format!(
@@ -275,7 +278,7 @@ fn report(arguments: &Map, summary: &MapSummary, remark: Option<&str>, written: 
         summary.cells.unknown,
         100.0 * summary.share_entropy_above_0_65
     ));
-    for line in remark.into_iter().chain(summary.warning.as_deref()) {
+    for line in remarks.iter().chain(&summary.warning) {
         say::line(format!("  {line}"));
     }
     say::line(format!("  {}", written.display()));

@@ -6,27 +6,35 @@ use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_explore::{CutOff, Run, Summary, Truth};
 use covmap_io::{
-    CoverageThresholds, OutputFolder, Replace, save_map_server, write_file, write_json,
+    MapCounts, MapThresholds, OutputFolder, Replace, save_map_server, write_file, write_json,
 };
 
-/// Writes a map: the whole posterior, and what is most likely for map_server.
-pub(crate) fn write_map(folder: &OutputFolder, map: &CoverageMap) -> Result<()> {
+/// Writes a map: the whole posterior, and what is safe to know of it for map_server.
+pub(crate) fn write_map(
+    folder: &OutputFolder,
+    map: &CoverageMap,
+    thresholds: &MapThresholds,
+) -> Result<MapCounts> {
     let belief = folder.path("belief.bin");
     write_file(belief, &map.to_bytes(), Replace::Any)?;
-    let likely = map.maximum_likelihood();
-    save_map_server(folder.partial(), "map", &likely, CoverageThresholds::default())?;
-    Ok(())
+    Ok(save_map_server(folder.partial(), "map", map, thresholds)?)
 }
 
-/// Writes everything but the trace, and returns the numbers.
+/// A line of the report: what other software is told.
+pub(crate) fn map_line(counts: &MapCounts) -> String {
+    let MapCounts { free, occupied, unknown } = counts;
+    format!("map.pgm: {free} free, {occupied} occupied, {unknown} unknown")
+}
+
+/// Writes everything but the trace, and returns the numbers, also those of the map.
 pub(crate) fn write(
     folder: &OutputFolder,
     task: &Task,
     run: &Run,
     seconds: f64,
     hash: String,
-) -> Result<Summary> {
-    let Task { world, mission, seed } = task;
+) -> Result<(Summary, MapCounts)> {
+    let Task { world, mission, seed, thresholds } = task;
     let truth = Truth::new(world, mission);
     let score = truth.score(&run.map, &truth.scored_cells(world, mission, run));
     let strategy = &mission.config.planner.strategy;
@@ -40,7 +48,7 @@ pub(crate) fn write(
         hash,
     );
 
-    write_map(folder, &run.map)?;
+    let counts = write_map(folder, &run.map, thresholds)?;
     let pictures = Pictures { mission, run, truth: &truth, summary: &summary };
     pictures.coverage().save(folder.path("coverage.png"))?;
     pictures.entropy().save(folder.path("entropy.png"))?;
@@ -50,5 +58,5 @@ pub(crate) fn write(
     pictures.certificate().save(folder.path("certificate.png"))?;
     // Last: whoever finds it finds all the others.
     write_json(folder.path("summary.json"), &summary)?;
-    Ok(summary)
+    Ok((summary, counts))
 }

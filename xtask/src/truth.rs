@@ -2,7 +2,8 @@
 
 use crate::arguments::Truth;
 use crate::input::about;
-use crate::{csv_file, input, output, say};
+use crate::world_file::{self, WorldFile};
+use crate::{csv_file, output, say};
 use anyhow::Result;
 use covmap_world::Surface;
 use std::io::Write;
@@ -12,7 +13,7 @@ pub(crate) fn run(arguments: &Truth) -> Result<ExitCode> {
     let Truth { world: file, resolution, out, force } = arguments;
     let replace = output::replace(out, *force, &[file])?;
     // Coverage does not depend on how a surface answers.
-    let world = input::world(file, Surface::Rough)?;
+    let WorldFile { world, remarks } = world_file::read(file, Surface::Rough)?;
     let grid = world.grid(*resolution).map_err(about(file))?;
     let coverage = world.coverage(&grid);
     csv_file::write_to(out, replace, |table| {
@@ -24,6 +25,7 @@ pub(crate) fn run(arguments: &Truth) -> Result<ExitCode> {
         }
         Ok(())
     })?;
+    remarks.say();
     say::line(format!("{}: {} × {} cells", out.display(), grid.width(), grid.height()));
     Ok(ExitCode::SUCCESS)
 }

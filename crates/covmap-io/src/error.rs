@@ -1,8 +1,7 @@
 //! What can be wrong with a file.
 
 use crate::escaped::{escaped, shown};
-use crate::map_server::MapServerError;
-use crate::pgm::PgmError;
+use crate::map_server::{ImageError, MapServerError};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -80,13 +79,23 @@ pub enum FileError {
         /// Why not.
         message: String,
     },
-    /// The image of a map is not what its header says.
+    /// The image of a map is no image, or not what its header says.
     #[error("{}: {reason}", shown(path))]
-    Pgm {
+    Image {
         /// The image.
         path: PathBuf,
         /// What is wrong with it.
-        reason: PgmError,
+        reason: ImageError,
+    },
+    /// The image that a map_server map names cannot be used.
+    #[error("{}: image: {reason}{}", shown(path), nor_beside(*missing))]
+    MapImage {
+        /// The YAML file.
+        path: PathBuf,
+        /// What is wrong with the image, by its name.
+        reason: Box<FileError>,
+        /// Whether it was also looked for beside the YAML file, and is not there.
+        missing: bool,
     },
     /// The description of a map_server map says something impossible.
     #[error("{}: {}", shown(path), escaped(reason))]
@@ -136,6 +145,10 @@ pub enum FileError {
     },
 }
 
+fn nor_beside(missing: bool) -> &'static str {
+    if missing { "; an image of that name is not beside the YAML file either" } else { "" }
+}
+
 fn in_field(field: &str) -> String {
     if field.is_empty() { String::new() } else { format!("{}: ", escaped(&field)) }
 }
@@ -158,7 +171,8 @@ impl FileError {
             | Self::Truncated { path, .. }
             | Self::LongLine { path, .. }
             | Self::Unwritable { path, .. }
-            | Self::Pgm { path, .. }
+            | Self::Image { path, .. }
+            | Self::MapImage { path, .. }
             | Self::MapServer { path, .. }
             | Self::Exists { path }
             | Self::OtherRun { path, .. }
@@ -174,10 +188,11 @@ impl FileError {
     }
 }
 
-/// The path of a field as `serde_path_to_error` found it; empty at the top.
+/// The path of a field as `serde_path_to_error` found it; empty at the top, and where a key
+/// itself is wrong.
 pub(crate) fn field_name(path: &serde_path_to_error::Path) -> String {
     let name = path.to_string();
-    if name == "." { String::new() } else { name }
+    if name == "." || name == "?" { String::new() } else { name }
 }
 
 /// A message of another library as part of one sentence: on one line, without a capital and

@@ -1,140 +1,148 @@
 //! Portable grey maps: the images of map_server.
 
-use covmap::{Grid, GridError};
-use nalgebra::Point2;
+use crate::map_server::ImageError;
 
-/// What is wrong with an image.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum PgmError {
-    /// The file is empty.
-    #[error("the image is empty")]
-    Empty,
-    /// A grey map whose samples are written as text.
-    #[error(
-        "a PGM image in text form (P2) is not read; make it binary (P5), \
-         for instance with `pnmtopnm map.pgm > binary.pgm`"
-    )]
-    Text,
-    /// No grey map at all.
-    #[error("not a PGM image: it does not begin with P5")]
-    Magic,
-    /// A number of the header is missing or is none.
-    #[error("the header of the PGM image has no valid {0}")]
-    Header(&'static str),
-    /// A largest sample that PGM does not have.
-    #[error("the PGM image has a maxval of {0}, which must be in 1..=65535")]
-    MaxValue(u64),
-    /// Absurd dimensions.
-    #[error("the PGM image cannot be a map: {0}")]
-    Size(#[from] GridError),
-    /// The file ends before the image does.
-    #[error(
-        "the PGM image ends early: {width} × {height} pixels need {expected} bytes \
-         and there are {actual}"
-    )]
-    Truncated {
-        /// Columns.
-        width: usize,
-        /// Rows.
-        height: usize,
-        /// Bytes that the pixels need.
-        expected: usize,
-        /// Bytes behind the header.
-        actual: usize,
-    },
-    /// A sample larger than the header allows.
-    #[error("a pixel of the PGM image is {value}, above its maxval of {max_value}")]
-    Sample {
-        /// The sample.
-        value: u16,
-        /// The largest sample of the header.
-        max_value: u16,
-    },
-}
-
-/// A grey image, row by row from the **top** left.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct Pgm {
+/// A grey image of the kind P5 (binary) or P2 (text), whose rows are read from the **top** on.
+#[derive(Debug)]
+pub(crate) struct Pgm<'a> {
     pub(crate) width: usize,
     pub(crate) height: usize,
     pub(crate) max_value: u16,
-    pub(crate) samples: Vec<u16>,
+    samples: Samples<'a>,
 }
 
-struct Header<'a>(&'a [u8]);
+/// The samples that were not read yet.
+#[derive(Debug)]
+enum Samples<'a> {
+    Text(Numbers<'a>),
+    Bytes(&'a [u8]),
+    /// The high byte first.
+    Pairs(&'a [u8]),
+}
 
-impl Header<'_> {
-    /// The next number, behind white space and comments.
-    fn number(&mut self, name: &'static str) -> Result<u64, PgmError> {
-        loop {
-            self.0 = self.0.trim_ascii_start();
-            if self.0.first() != Some(&b'#') {
-                break;
+impl<'a> Pgm<'a> {
+    /// The image that a file holds. Bytes behind the image do not matter, and nothing is
+    /// allocated.
+    pub(crate) fn new(file: &'a [u8]) -> Result<Self, ImageError> {
+        let (is_text, rest) = match file {
+            [b'P', b'5', rest @ ..] => (false, rest),
+            [b'P', b'2', rest @ ..] => (true, rest),
+            _ => return Err(ImageError::Unread("no image that is known here")),
+        };
+        let mut numbers = Numbers(rest);
+        let mut number = |name| numbers.next().ok_or(ImageError::Header(name));
+        let (width, height, max_value) = (number("width")?, number("height")?, number("maxval")?);
+        let (width, height) = ImageError::check_size(width, height)?;
+        let max_value = match u16::try_from(max_value) {
+            Ok(value) if value > 0 => value,
+            _ => return Err(ImageError::MaxValue(max_value)),
+        };
+        let samples = if is_text {
+            Samples::Text(numbers)
+        } else {
+            let is_wide = max_value > 255;
+            let expected = width * height * if is_wide { 2 } else { 1 };
+            let bytes = numbers.binary(file, expected)?;
+            let actual = bytes.len();
+            if actual < expected {
+                return Err(ImageError::Truncated { width, height, expected, actual });
             }
-            let end = self.0.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
-            self.0 = &self.0[end.unwrap_or(self.0.len())..];
+            if is_wide { Samples::Pairs(bytes) } else { Samples::Bytes(bytes) }
+        };
+        Ok(Self { width, height, max_value, samples })
+    }
+
+    /// Puts the samples of the next row into `row`.
+    pub(crate) fn next_row(&mut self, row: &mut Vec<u16>) -> Result<(), ImageError> {
+        let &mut Self { width, height, max_value, .. } = self;
+        row.clear();
+        match &mut self.samples {
+            Samples::Bytes(bytes) => {
+                let now = bytes.split_off(..width).unwrap_or_default();
+                row.extend(now.iter().map(|byte| u16::from(*byte)));
+            }
+            Samples::Pairs(bytes) => {
+                let now = bytes.split_off(..2 * width).unwrap_or_default();
+                row.extend(now.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])));
+            }
+            Samples::Text(numbers) => {
+                for _ in 0..width {
+                    let value = numbers.next().ok_or(ImageError::NoSample { width, height })?;
+                    // Above all that are allowed, and so refused next.
+                    row.push(u16::try_from(value).unwrap_or(u16::MAX));
+                }
+            }
+        }
+        match row.iter().find(|sample| **sample > max_value) {
+            Some(value) => Err(ImageError::Sample { value: *value, max_value }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Numbers in text, with comments between them.
+#[derive(Debug)]
+struct Numbers<'a>(&'a [u8]);
+
+impl<'a> Numbers<'a> {
+    fn next(&mut self) -> Option<u64> {
+        self.0 = self.0.trim_ascii_start();
+        while self.0.first() == Some(&b'#') {
+            self.0 = from_line_end(self.0).trim_ascii_start();
         }
         let digits = self.0.iter().take_while(|byte| byte.is_ascii_digit()).count();
         let (number, rest) = self.0.split_at(digits);
         self.0 = rest;
-        let number = std::str::from_utf8(number).ok().and_then(|text| text.parse().ok());
-        number.ok_or(PgmError::Header(name))
+        std::str::from_utf8(number).ok()?.parse().ok()
     }
 
-    /// The one byte of white space that ends the header.
-    fn end(&mut self) -> Result<(), PgmError> {
-        match self.0.split_first() {
-            Some((space, rest)) if space.is_ascii_whitespace() => {
-                self.0 = rest;
-                Ok(())
-            }
-            _ => Err(PgmError::Header("end")),
+    /// The binary samples behind the header of a file.
+    ///
+    /// One byte of white space ends a header, and a pixel may have any value: what looks like
+    /// a line end of two bytes, or like one more comment, may be pixels. Lines end with CR LF
+    /// if others of the header do, or if there are enough bytes behind both. A comment is one
+    /// if exactly the image is behind it.
+    fn binary(&self, file: &[u8], expected: usize) -> Result<&'a [u8], ImageError> {
+        let end = if self.0.first() == Some(&b'#') { from_line_end(self.0) } else { self.0 };
+        let space = end.first().is_some_and(u8::is_ascii_whitespace);
+        let plain = end.get(1..).filter(|_| space).ok_or(ImageError::Header("end"))?;
+        let is_crlf = line_ends(&file[..file.len() - end.len()]) > 0;
+        let begin = match end.strip_prefix(b"\r\n") {
+            Some(behind) if is_crlf || behind.len() >= expected => behind,
+            _ => plain,
+        };
+        let mut behind_comments = begin;
+        while behind_comments.len() > expected && behind_comments.first() == Some(&b'#') {
+            let end = from_line_end(behind_comments);
+            behind_comments = end.strip_prefix(b"\r\n").or(end.get(1..)).unwrap_or_default();
         }
+        if behind_comments.len() == expected {
+            return Ok(behind_comments);
+        }
+        // A transfer as text makes CR LF of every pixel of value 10.
+        if is_crlf && begin.len().checked_sub(expected) == Some(line_ends(begin)) {
+            return Err(ImageError::LineEnds);
+        }
+        Ok(begin)
     }
 }
 
-impl Pgm {
-    /// The image that the bytes of a P5 file hold; bytes behind the image do not matter.
-    /// Nothing is allocated before the sizes are checked.
-    pub(crate) fn from_bytes(bytes: &[u8]) -> Result<Self, PgmError> {
-        let mut header = match bytes {
-            [] => return Err(PgmError::Empty),
-            [b'P', b'5', rest @ ..] => Header(rest),
-            [b'P', b'2', ..] => return Err(PgmError::Text),
-            _ => return Err(PgmError::Magic),
-        };
-        let mut side = |name| {
-            let number = header.number(name)?;
-            Ok::<_, PgmError>(usize::try_from(number).unwrap_or(usize::MAX))
-        };
-        let (width, height) = (side("width")?, side("height")?);
-        let max_value = header.number("maxval")?;
-        header.end()?;
-        let max_value = match u16::try_from(max_value) {
-            Ok(value) if value > 0 => value,
-            _ => return Err(PgmError::MaxValue(max_value)),
-        };
-        let cells = Grid::new(Point2::origin(), 1.0, width, height)?.len();
-        let sample_size = if max_value > 255 { 2 } else { 1 };
-        let (expected, actual) = (cells * sample_size, header.0.len());
-        let Some(pixels) = header.0.get(..expected) else {
-            return Err(PgmError::Truncated { width, height, expected, actual });
-        };
-        let samples: Vec<u16> = if sample_size == 1 {
-            pixels.iter().map(|byte| u16::from(*byte)).collect()
-        } else {
-            pixels.chunks_exact(2).map(|pair| u16::from_be_bytes([pair[0], pair[1]])).collect()
-        };
-        match samples.iter().find(|sample| **sample > max_value) {
-            Some(value) => Err(PgmError::Sample { value: *value, max_value }),
-            None => Ok(Self { width, height, max_value, samples }),
-        }
-    }
+/// What begins with the end of the first line.
+fn from_line_end(text: &[u8]) -> &[u8] {
+    let end = text.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+    &text[end.unwrap_or(text.len())..]
 }
 
-/// The bytes of a P5 file with 8-bit samples, row by row from the **top** left.
+/// How many lines end with CR LF.
+fn line_ends(text: &[u8]) -> usize {
+    text.windows(2).filter(|pair| pair == b"\r\n").count()
+}
+
+/// The bytes of a P5 file with 8-bit samples, row by row from the **top** left, with a comment
+/// of one or more lines.
 pub(crate) fn pgm_bytes(width: usize, height: usize, comment: &str, samples: &[u8]) -> Vec<u8> {
-    let mut bytes = format!("P5\n# {comment}\n{width} {height}\n255\n").into_bytes();
+    let comment: String = comment.lines().map(|line| format!("# {line}\n")).collect();
+    let mut bytes = format!("P5\n{comment}{width} {height}\n255\n").into_bytes();
     bytes.extend(samples);
     bytes
 }
@@ -144,39 +152,76 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn parse(bytes: &[u8]) -> Result<Pgm, String> {
-        Pgm::from_bytes(bytes).map_err(|error| error.to_string())
+    /// Largest sample, and all rows.
+    fn parse(file: &[u8]) -> Result<(u16, Vec<Vec<u16>>), String> {
+        let read = || {
+            let mut pgm = Pgm::new(file)?;
+            let mut row = Vec::new();
+            let rows = (0..pgm.height).map(|_| pgm.next_row(&mut row).map(|()| row.clone()));
+            let rows = rows.collect::<Result<_, _>>()?;
+            Ok((pgm.max_value, rows))
+        };
+        read().map_err(|error: ImageError| error.to_string())
     }
 
     #[track_caller]
-    fn refuse(bytes: &[u8], expected: &str) {
-        let error = parse(bytes).unwrap_err();
+    fn check(file: &[u8], max_value: u16, rows: &[&[u16]]) {
+        let rows = rows.iter().map(|row| row.to_vec()).collect();
+        assert_eq!(parse(file), Ok((max_value, rows)));
+    }
+
+    #[track_caller]
+    fn refuse(file: &[u8], expected: &str) {
+        let error = parse(file).unwrap_err();
         assert!(error.contains(expected), "{error}");
     }
 
     #[test]
     fn comments_may_stand_anywhere_in_the_header() {
-        let image = parse(b"P5 # one\n#two\r\n3#three\n 1\t# 9 9\n200\n\x00\x0a\xc8 more").unwrap();
-        assert_eq!(image, Pgm { width: 3, height: 1, max_value: 200, samples: vec![0, 10, 200] });
+        let file = b"P5 # one\n#two\r\n3#three\n 1\t# 9 9\n200\n\x00\x0a\xc8";
+        check(file, 200, &[&[0, 10, 200]]);
+        check(b"P5#\n#\n2 1 255#last\nab", 255, &[&[97, 98]]);
+        check(b"P2 2 #\n 2 9 1 # 8\n 2#\n3 4", 9, &[&[1, 2], &[3, 4]]);
+    }
+
+    #[test]
+    fn a_comment_behind_the_header_is_told_from_pixels_by_the_size() {
+        check(b"P5\n2 1\n255\n# written by hand\nab", 255, &[&[97, 98]]);
+        check(b"P5\r\n2 1\r\n255\r\n# one\r\n# two\r\nab", 255, &[&[97, 98]]);
+        check(b"P5\n3 1\n255\n#\nb", 255, &[&[35, 10, 98]]);
+    }
+
+    #[test]
+    fn lines_of_the_header_may_end_with_two_bytes() {
+        check(b"P5\r\n2 2\r\n255\r\nabcd", 255, &[&[97, 98], &[99, 100]]);
+        check(b"P5 2 2 255\r\nabcd", 255, &[&[97, 98], &[99, 100]]);
+        check(b"P5\r\n1 2\r\n255\r\n\r\n", 255, &[&[13], &[10]]);
+        check(b"P5\r\n1 2\r\n255\nab", 255, &[&[97], &[98]]);
+        check(b"P2\r\n2 1\r\n255\r\n7 8\r\n", 255, &[&[7, 8]]);
+        // With line ends of one CR, a pixel of value 10 is a pixel.
+        check(b"P5\r1 2\r255\r\nb", 255, &[&[10], &[98]]);
+        // One byte is missing: the LF is not taken for it.
+        refuse(b"P5\r\n2 2\r\n255\r\nabc", "2 × 2 pixels need 4 bytes and there are 3");
+        // The pixels are a, 10, c, 10.
+        refuse(b"P5\r\n2 2\r\n255\r\na\r\nc\r\n", "copy the file again");
     }
 
     #[test]
     fn samples_of_16_bits_have_their_high_byte_first() {
-        let image = parse(b"P5 2 1 65535 \x01\x02\xff\xff").unwrap();
-        assert_eq!(image.samples, [0x0102, 0xffff]);
+        check(b"P5 2 1 65535 \x01\x02\xff\xff", 65535, &[&[0x0102, 0xffff]]);
+        check(b"P5 1 2 256 \x01\x00\x00\xff", 256, &[&[256], &[255]]);
+        check(b"P2 2 1 65535 65535\n0", 65535, &[&[65535, 0]]);
     }
 
     #[test]
     fn what_is_written_is_read() {
-        let image = parse(&pgm_bytes(2, 2, "a map", &[1, 2, 3, 255])).unwrap();
-        assert_eq!(image, Pgm { width: 2, height: 2, max_value: 255, samples: vec![1, 2, 3, 255] });
+        let file = pgm_bytes(2, 2, "a map\nof mine", &[1, 2, 3, 255]);
+        assert!(file.starts_with(b"P5\n# a map\n# of mine\n2 2\n"));
+        check(&file, 255, &[&[1, 2], &[3, 255]]);
     }
 
     #[test]
     fn a_damaged_image_is_refused_in_one_clear_sentence() {
-        refuse(b"", "is empty");
-        refuse(b"P2\n1 1\n255\n0", "make it binary (P5)");
-        refuse(b"\x89PNG\r\n", "does not begin with P5");
         refuse(b"P5", "no valid width");
         refuse(b"P5 -3 4 255 ", "no valid width");
         refuse(b"P5 3 99999999999999999999999 255 ", "no valid height");
@@ -184,20 +229,37 @@ mod tests {
         refuse(b"P5 1 1 0 a", "maxval of 0");
         refuse(b"P5 1 1 65536 a", "maxval of 65536");
         refuse(b"P5 1 1 255", "no valid end");
-        refuse(b"P5 0 5 255 ", "0 × 5 cells is empty");
-        refuse(b"P5 5000 5000 255 ", "more than 20000000 cells");
-        refuse(b"P5 18446744073709551615 2 255 ", "more than 20000000 cells");
+        refuse(b"P5 1 1 255x", "no valid end");
+        refuse(b"P5 1 1 255#", "no valid end");
+        refuse(b"P5 0 5 255 ", "0 × 5 pixels");
+        refuse(b"P5 9000 9000 255 ", "9000 × 9000 pixels");
+        refuse(b"P5 18446744073709551615 2 255 ", "18446744073709551615 × 2 pixels");
         refuse(b"P5 2 2 255 abc", "2 × 2 pixels need 4 bytes and there are 3");
         refuse(b"P5 2 1 256 abc", "2 × 1 pixels need 4 bytes and there are 3");
         refuse(b"P5 1 1 100 e", "is 101, above its maxval of 100");
+        refuse(b"P2 2 2 9 1 2 3", "does not hold the numbers of 2 × 2 pixels");
+        refuse(b"P2 2 2 9 1 2 x 3", "does not hold the numbers of 2 × 2 pixels");
+        refuse(b"P2 2 1 9 1 -2", "does not hold the numbers of 2 × 1 pixels");
+        refuse(b"P2 2 1 9 1 10", "is 10, above its maxval of 9");
+        refuse(b"P2 2 1 9 1 99999999", "is 65535, above its maxval of 9");
     }
 
     proptest! {
         #[test]
         fn arbitrary_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..60),
-                                       header in "P5[ 0-9#\n]{0,30}") {
-            let _ = Pgm::from_bytes(&bytes);
-            let _ = Pgm::from_bytes(&[header.as_bytes(), &bytes].concat());
+                                       header in "P[25][ 0-9#\r\n]{0,30}") {
+            let _ = parse(&bytes);
+            let _ = parse(&[header.as_bytes(), &bytes].concat());
+        }
+
+        #[test]
+        fn any_line_end_and_any_pixels_are_read(
+            pixels in prop::collection::vec(any::<u8>(), 6), end in "\n|\r\n| |\t",
+        ) {
+            let file = [b"P5".as_slice(), b"3 2", b"255"].map(|line| [line, end.as_bytes()].concat());
+            let file = [file.concat(), pixels.clone()].concat();
+            let rows = pixels.chunks(3).map(|row| row.iter().copied().map(u16::from).collect());
+            prop_assert_eq!(parse(&file), Ok((255, rows.collect())));
         }
     }
 }

@@ -97,6 +97,18 @@ pub fn read_bytes(path: impl AsRef<Path>, limit: u64) -> Result<Vec<u8>, FileErr
     Ok(bytes)
 }
 
+/// The first bytes of a file, at most `limit` of them: enough to tell what it is.
+///
+/// # Errors
+/// If the file cannot be read.
+pub fn read_beginning(path: impl AsRef<Path>, limit: usize) -> Result<Vec<u8>, FileError> {
+    let path = path.as_ref();
+    let file = open_input(path)?;
+    let mut bytes = Vec::new();
+    file.take(limit as u64).read_to_end(&mut bytes).map_err(FileError::io(path, "read"))?;
+    Ok(bytes)
+}
+
 /// The text of a file of at most `limit` bytes.
 ///
 /// # Errors

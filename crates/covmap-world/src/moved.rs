@@ -62,6 +62,25 @@ impl Shape {
 /// A filling that is thinner than this is left out \[m\].
 const THIN: f64 = 1e-6;
 
+/// The triangles, counter-clockwise, beyond the sides of a turned rectangle, up to the corners
+/// of its bounding box from `low` to `high`. The rectangle's corners are counter-clockwise.
+pub(crate) fn beyond_sides(
+    corners: [Point2<f64>; 4],
+    low: Point2<f64>,
+    high: Point2<f64>,
+) -> impl Iterator<Item = [Point2<f64>; 3]> {
+    (0..4).filter_map(move |i| {
+        let (a, b) = (corners[i], corners[(i + 1) % 4]);
+        // The outside is to the right of a → b.
+        let outwards = Vector2::new(b.y - a.y, a.x - b.x);
+        let corner = Point2::new(
+            if outwards.x > 0.0 { high.x } else { low.x },
+            if outwards.y > 0.0 { high.y } else { low.y },
+        );
+        (outwards.x.abs().min(outwards.y.abs()) > THIN).then_some([b, a, corner])
+    })
+}
+
 /// What is solid around the turned extent: a triangle beyond each of its sides, up to the
 /// corner of the bounding box; and the two strips of the shift.
 fn fillings(
@@ -69,17 +88,8 @@ fn fillings(
     shift: Vector2<f64>,
     high: Point2<f64>,
 ) -> impl Iterator<Item = Obstacle> {
-    let triangles = (0..4).filter_map(move |i| {
-        let (a, b) = (corners[i], corners[(i + 1) % 4]);
-        // Counter-clockwise: the outside is to the right of a → b.
-        let outwards = Vector2::new(b.y - a.y, a.x - b.x);
-        let corner = Point2::new(
-            if outwards.x > 0.0 { high.x } else { shift.x },
-            if outwards.y > 0.0 { high.y } else { shift.y },
-        );
-        let points = [a, b, corner].map(|p| (p.x, p.y)).to_vec();
-        (outwards.x.abs().min(outwards.y.abs()) > THIN).then_some(Shape::Polygon(points))
-    });
+    let triangles = beyond_sides(corners, Point2::from(shift), high);
+    let triangles = triangles.map(|points| Shape::Polygon(points.map(|p| (p.x, p.y)).to_vec()));
     // As a polygon: a rectangle may not be as thin as a strip.
     let strip = |x: f64, y: f64| {
         let shape = Shape::Polygon(vec![(0.0, 0.0), (x, 0.0), (x, y), (0.0, y)]);

@@ -4,11 +4,55 @@ use crate::geometry::{Face, Feature, Kind};
 use crate::outline::Outline;
 use crate::scenario::Surface;
 use covmap::{Cell, Grid, Raster};
-use nalgebra::Point2;
+use nalgebra::{Isometry2, Point2};
 use std::ops::Range;
 
+/// The raster without what is solid and farther than `margin` \[m\] beyond all that is free:
+/// everything outside of a world is solid anyway, and a grid over it costs memory.
+pub(crate) fn trimmed(solid: &Raster<bool>, margin: f64) -> Raster<bool> {
+    let grid = solid.grid();
+    let free = solid.iter().filter_map(|(cell, solid)| (!solid).then_some(cell));
+    let span = |found: Option<(Cell, Cell)>, cell: Cell| match found {
+        None => Some((cell, cell)),
+        Some((low, high)) => Some((
+            Cell::new(low.x.min(cell.x), low.y.min(cell.y)),
+            Cell::new(high.x.max(cell.x), high.y.max(cell.y)),
+        )),
+    };
+    let Some((low, high)) = free.fold(None, span) else { return solid.clone() };
+    #[allow(clippy::cast_possible_truncation, reason = "clamped")]
+    let margin = (margin / grid.resolution() - 1e-9).ceil().clamp(1.0, 1e6) as i32;
+    let low = Cell::new((low.x - margin).max(0), (low.y - margin).max(0));
+    let width = (high.x + margin + 1).min(columns(grid)) - low.x;
+    let height = (high.y + margin + 1).min(rows(grid)) - low.y;
+    let kept = (0..height).flat_map(|y| (0..width).map(move |x| low.offset(x, y)));
+    let kept: Vec<bool> = kept.filter_map(|cell| solid.get(cell).copied()).collect();
+    let corner = grid.lower_corner(low);
+    let size = [width, height].map(|side| usize::try_from(side).unwrap_or_default());
+    let grid = Grid::new(corner, grid.resolution(), size[0], size[1]);
+    let raster = grid.ok().and_then(|grid| Raster::from_values(grid, kept));
+    raster.unwrap_or_else(|| unreachable!("it is a part of a raster"))
+}
+
+/// The disjoint outlines of all that is solid in a raster, its faces and their features, where
+/// `world_from_raster` puts them.
+pub(crate) fn solids(
+    solid: &Raster<bool>,
+    world_from_raster: &Isometry2<f64>,
+    surface: Surface,
+) -> (Vec<Outline>, (Vec<Face>, Vec<Feature>)) {
+    let place = |point: Point2<f64>| world_from_raster * point;
+    let outlines = rectangles(solid, surface).into_iter().map(|outline| {
+        Outline::new(outline.points.into_iter().map(place).collect(), outline.surface)
+    });
+    let (faces, mut features) = boundary(solid, surface);
+    let faces = faces.iter().map(|f| Face::new(place(f.a), place(f.b), f.surface)).collect();
+    features.iter_mut().for_each(|feature| feature.at = place(feature.at));
+    (outlines.collect(), (faces, features))
+}
+
 /// Disjoint rectangles that make up the solid cells: runs of a row, grown upwards.
-pub(crate) fn rectangles(solid: &Raster<bool>, surface: Surface) -> Vec<Outline> {
+fn rectangles(solid: &Raster<bool>, surface: Surface) -> Vec<Outline> {
     let grid = solid.grid();
     let mut done = Vec::new();
     let mut open: Vec<(Range<i32>, i32)> = Vec::new();
@@ -35,7 +79,7 @@ pub(crate) fn rectangles(solid: &Raster<bool>, surface: Surface) -> Vec<Outline>
 }
 
 /// The faces between solid and free cells, the outside being solid, and their features.
-pub(crate) fn boundary(solid: &Raster<bool>, surface: Surface) -> (Vec<Face>, Vec<Feature>) {
+fn boundary(solid: &Raster<bool>, surface: Surface) -> (Vec<Face>, Vec<Feature>) {
     let grid = solid.grid();
     let mut faces = Vec::new();
     let at = |x: i32, y: i32| grid.lower_corner(Cell::new(x, y));

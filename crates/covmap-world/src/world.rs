@@ -2,6 +2,7 @@
 
 use crate::error::{MAX_BURIALS, MAX_EXTENT, MAX_HEADING, MIN_LENGTH, WorldError};
 use crate::geometry::{Bounds, Exposed, Face, Feature, Index, feature};
+use crate::moved::beyond_sides;
 use crate::outline::{Outline, distinct, outlines};
 use crate::raster_world;
 use crate::scenario::{Scenario, Surface};
@@ -82,7 +83,8 @@ impl World {
     /// The world in which each `true` cell of a raster is a solid square with a surface, and
     /// everything outside of the raster is solid too.
     ///
-    /// Faces of cells in a row are one smooth face.
+    /// Faces of cells in a row are one smooth face. The extent is that of the raster, without
+    /// what is solid and more than .30 m beyond all that is free.
     ///
     /// # Errors
     /// If the name cannot name a file, or a side is longer than 10 km.
@@ -91,18 +93,39 @@ impl World {
         solid: &Raster<bool>,
         surface: Surface,
     ) -> Result<Self, WorldError> {
+        Self::from_turned_raster(name, solid, &Isometry2::identity(), surface)
+    }
+
+    /// The world of a raster that stands somewhere else: `world_from_raster` turns and shifts
+    /// it, squares and all. The extent is the box around it.
+    ///
+    /// # Errors
+    /// As [`World::from_raster`].
+    pub fn from_turned_raster(
+        name: &str,
+        solid: &Raster<bool>,
+        world_from_raster: &Isometry2<f64>,
+        surface: Surface,
+    ) -> Result<Self, WorldError> {
+        let solid = raster_world::trimmed(solid, MARGIN);
         let grid = solid.grid();
         let low = grid.lower_left();
         #[allow(clippy::cast_precision_loss, reason = "a grid has at most 2e7 cells")]
         let high =
             low + Vector2::new(grid.width() as f64, grid.height() as f64) * grid.resolution();
+        let corners = [low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y)];
+        let corners = corners.map(|corner| world_from_raster * corner);
+        let low = corners[1..].iter().fold(corners[0], |low, corner| low.inf(corner));
+        let high = corners[1..].iter().fold(corners[0], |high, corner| high.sup(corner));
         let size = high - low;
         let far = low.coords.amax().max(high.coords.amax()) > 100.0 * MAX_EXTENT;
         if far || !size.iter().all(|v| (MIN_LENGTH..=MAX_EXTENT).contains(v)) {
             return Err(WorldError::Extent(size.x, size.y));
         }
-        let outlines = raster_world::rectangles(solid, surface);
-        let (faces, features) = raster_world::boundary(solid, surface);
+        let (mut outlines, (faces, features)) =
+            raster_world::solids(&solid, world_from_raster, surface);
+        let beyond = beyond_sides(corners, low, high).map(|triangle| triangle.to_vec());
+        outlines.extend(beyond.map(|points| Outline::new(points, surface)));
         let mut world = Self::new(name, (low, high), outlines, faces, features)?;
         world.disjoint = true;
         Ok(world)

@@ -57,7 +57,7 @@ pub(crate) struct Log {
 
 #[derive(Debug, Args)]
 pub(crate) struct Truth {
-    /// A scenario (.ron), or a map of ROS map_server (.yaml with its .pgm)
+    /// A scenario (.ron), or a map of ROS map_server (.yaml with its .pgm or .png)
     pub(crate) world: PathBuf,
     /// Side of a cell in metres
     #[arg(long, value_name = "M", value_parser = resolution, default_value = "0.1")]

@@ -3,30 +3,38 @@
 use nalgebra::{Isometry2, Vector2};
 use std::path::PathBuf;
 
-fn number(text: &str, min: f64, max: f64) -> Result<f64, String> {
+fn number(text: &str, min: f64, max: f64, unit: &str) -> Result<f64, String> {
     let value: f64 = text.trim().parse().map_err(|_| "not a number".to_owned())?;
     let good = (min..=max).contains(&value);
-    good.then_some(value).ok_or_else(|| format!("it must lie in [{min}, {max}] m"))
+    good.then_some(value).ok_or_else(|| format!("it must lie in [{min}, {max}]{unit}"))
 }
 
 pub(super) fn resolution(text: &str) -> Result<f64, String> {
-    number(text, 1e-3, 10.0)
+    number(text, 1e-3, 10.0, " m")
 }
 
 pub(super) fn while_driving(text: &str) -> Result<f64, String> {
-    number(text, 0.01, 1e6)
+    number(text, 0.01, 1e6, " m")
 }
 
 pub(super) fn every(text: &str) -> Result<f64, String> {
-    number(text, 0.0, 1e3)
+    number(text, 0.0, 1e3, " m")
 }
 
 pub(super) fn every_degrees(text: &str) -> Result<f64, String> {
-    number(text, 0.0, 360.0).map_err(|error| error.replace(" m", " degrees"))
+    number(text, 0.0, 360.0, " degrees")
 }
 
 pub(super) fn range(text: &str) -> Result<f64, String> {
-    number(text, 1e-3, 100.0)
+    number(text, 1e-3, 100.0, " m")
+}
+
+pub(super) fn entropy(text: &str) -> Result<f64, String> {
+    number(text, 0.0, 5.0, " nats")
+}
+
+pub(super) fn coverage(text: &str) -> Result<f64, String> {
+    number(text, 0.0, 1.0, "")
 }
 
 pub(super) fn start(text: &str) -> Result<Isometry2<f64>, String> {

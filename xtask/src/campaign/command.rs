@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     }
     if arguments.check {
         let plan = Plan::new(&campaign)?;
-        plan.left_out().for_each(say::note);
+        plan.notes.iter().for_each(say::note);
         say::line(format!("{}: {} runs", campaign.name, plan.jobs.len()));
         return Ok(ExitCode::SUCCESS);
     }

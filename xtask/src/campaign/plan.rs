@@ -7,10 +7,10 @@ use super::record::RunKey;
 use super::version::VERSION;
 use crate::input::{self, about};
 use crate::memory;
+use crate::world_file;
 use anyhow::{Result, anyhow, bail};
-use covmap::Raster;
 use covmap_explore::{Config, Limits, Mission};
-use covmap_io::{MAX_FILE, load_map_server, read_bytes, read_ron};
+use covmap_io::{MAX_FILE, MapServerMap, read_bytes};
 use covmap_plan::Strategy;
 use covmap_world::{Scenario, World};
 use nalgebra::Isometry2;
@@ -84,21 +84,21 @@ pub(crate) struct Plan {
     pub(crate) cases: Vec<Case>,
     pub(crate) jobs: Vec<Job>,
     pub(crate) keep_paths: bool,
-    /// The worlds that are left out because their files are not there.
-    left_out: Vec<PathBuf>,
+    /// What there is to say about the worlds: which are left out, and what their files hide.
+    pub(crate) notes: Vec<String>,
 }
 
 impl Plan {
     /// Finds all runs, and what is wrong with any of them.
     pub(crate) fn new(campaign: &Campaign) -> Result<Self> {
         check_lists(campaign)?;
-        let (mut cases, mut jobs, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut cases, mut jobs, mut notes) = (Vec::new(), Vec::new(), Vec::new());
         for world in &campaign.worlds {
             if world.is_left_out() {
-                left_out.push(world.file.clone());
+                notes.push(format!("{}: is not there, and is left out", world.file.display()));
                 continue;
             }
-            let source = Source::read(world)?;
+            let source = Source::read(world, &mut notes)?;
             for setting in &campaign.settings {
                 let case = source.case(world, setting, campaign)?;
                 let strategies = setting.strategies.as_ref().unwrap_or(&campaign.strategies);
@@ -114,7 +114,7 @@ impl Plan {
         for (job, planned) in jobs.iter_mut().zip(&manifest.runs) {
             job.planned = planned.clone();
         }
-        Ok(Self { manifest, cases, jobs, keep_paths: campaign.keep_paths, left_out })
+        Ok(Self { manifest, cases, jobs, keep_paths: campaign.keep_paths, notes })
     }
 
     /// How many runs fit into the memory together, at least one.
@@ -127,11 +127,6 @@ impl Plan {
         };
         let fits: Vec<usize> = self.cases.iter().map(fit).collect::<Result<_>>()?;
         Ok(fits.into_iter().min().and_then(NonZeroUsize::new).unwrap_or(NonZeroUsize::MIN))
-    }
-
-    /// What there is to say of worlds that are left out.
-    pub(crate) fn left_out(&self) -> impl Iterator<Item = String> + '_ {
-        self.left_out.iter().map(|f| format!("{}: is not there, and is left out", f.display()))
     }
 
     /// The mission of a run.
@@ -260,7 +255,7 @@ enum Kind {
 }
 
 impl Source {
-    fn read(world: &NamedWorld) -> Result<Self> {
+    fn read(world: &NamedWorld, notes: &mut Vec<String>) -> Result<Self> {
         let NamedWorld { file, turn, shift, .. } = world;
         let moves = [*turn, shift.0, shift.1];
         if !moves.iter().all(|v| v.is_finite()) || shift.0 < 0.0 || shift.1 < 0.0 {
@@ -268,7 +263,7 @@ impl Source {
         }
         let bytes = |path: &Path| read_bytes(path, MAX_FILE);
         if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {
-            let scenario: Scenario = read_ron(file)?;
+            let scenario = world_file::scenario(file)?;
             let digest = Digest::default().with(bytes(file)?).with_numbers(&moves);
             return Ok(Self { kind: Kind::Scenario(scenario), digest });
         }
@@ -277,7 +272,9 @@ impl Source {
         }
         // What is no map of map_server is refused when the world is made of it.
         let digest = if world.is_map() {
-            map_digest(&load_map_server(file)?.solid())
+            let map = world_file::map(file)?;
+            notes.extend(world_file::remarks(file, &map).warnings);
+            map_digest(&map)
         } else {
             Digest::default()
         };
@@ -310,11 +307,12 @@ impl Source {
     }
 }
 
-/// The cells of a map say all that its two files do.
-fn map_digest(solid: &Raster<bool>) -> Digest {
-    let (grid, low) = (solid.grid(), solid.grid().lower_left());
-    let cells: Vec<u8> = solid.values().iter().map(|solid| u8::from(*solid)).collect();
-    let numbers = [low.x, low.y, grid.resolution()];
+/// The cells of a map, and where they are, say all that its two files do.
+fn map_digest(map: &MapServerMap) -> Digest {
+    let (grid, low, pose) = (&map.grid, map.grid.lower_left(), &map.world_from_map);
+    let cells: Vec<u8> = map.solid().values().iter().map(|solid| u8::from(*solid)).collect();
+    let at = pose.translation.vector;
+    let numbers = [low.x, low.y, grid.resolution(), at.x, at.y, pose.rotation.angle()];
     Digest::default().with_numbers(&numbers).with(grid.width().to_string()).with(cells)
 }
 

@@ -65,7 +65,7 @@ pub(crate) fn run(
         tell(&Step::Note(note));
     }
     let folder = Folder::open(options.out, &plan.manifest)?;
-    plan.left_out().for_each(|note| tell(&Step::Note(note)));
+    plan.notes.iter().for_each(|note| tell(&Step::Note(note.clone())));
     let strangers = folder.strangers(&plan.manifest)?;
     if strangers > 0 {
         let files = if strangers == 1 { "file is" } else { "files are" };

@@ -2,7 +2,7 @@
 
 use crate::typed::{Shell, shipped, short_run};
 use covmap::CoverageMap;
-use covmap_io::{MapCell, load_map_server};
+use covmap_io::{MapCell, MapServerMap, load_map_server};
 
 const FILES: [&str; 11] = [
     "summary.json",
@@ -216,29 +216,85 @@ fn a_folder_that_holds_an_input_is_not_replaced() {
     shell.refuse(line, &["run: holds run/map.yaml, which this command reads"]);
 }
 
-#[test]
-fn the_map_is_read_back_and_unknown_stays_unknown() {
-    let shell = Shell::new();
-    shell.expect(&short_run().replace("30", "2"), 3);
+/// The map that a run wrote, its belief, and the last cells of map.pgm as the report counts
+/// them: free, occupied, unknown.
+fn written(shell: &Shell) -> (MapServerMap, CoverageMap, [usize; 3]) {
     let map = load_map_server(shell.path("run/map.yaml")).unwrap();
     let belief = std::fs::read(shell.path("run/belief.bin")).unwrap();
     let belief = CoverageMap::from_bytes(&belief).unwrap();
-    let same = |a: f64, b: f64| (a - b).abs() < 1e-9;
-    assert!(same(map.grid.resolution(), 0.2));
-    assert!(same(map.grid.lower_left().x, belief.grid().lower_left().x));
-    let mut unknown = 0;
+    let image = std::fs::read(shell.path("run/map.pgm")).unwrap();
+    let greys = &image[image.len() - belief.grid().len()..];
+    let counts = [254, 0, 205].map(|grey| greys.iter().filter(|g| **g == grey).count());
+    (map, belief, counts)
+}
+
+#[test]
+fn what_leaves_for_other_software_is_safe() {
+    let shell = Shell::new();
+    let lab = shipped("scenarios/lab.ron");
+    let typed = shell.expect(&format!("explore {lab} --resolution 0.2 --out run"), 0);
+    let (map, belief, [free, occupied, unknown]) = written(&shell);
+    assert!(
+        typed
+            .out
+            .contains(&format!("  map.pgm: {free} free, {occupied} occupied, {unknown} unknown\n"))
+    );
+    assert!(free > 0 && occupied > 0 && free + occupied + unknown == belief.grid().len());
+    let (mut found, mut unsure) = ([0; 3], 0);
     for (cell, read) in map.cells.iter() {
-        match (belief.is_known(cell), belief.mode(cell), *read) {
-            (false, _, read) => {
-                assert_eq!(read, MapCell::Unknown);
-                unknown += 1;
-            }
-            (true, mode, MapCell::Occupancy(p)) if p < 0.5 => assert!(mode <= 0.2 + 1e-9),
-            (true, mode, MapCell::Occupancy(_)) => assert!(mode >= 0.5 - 1e-9),
-            (true, mode, MapCell::Unknown) => assert!(mode > 0.2 && mode < 0.5),
-        }
+        let here = belief.grid().cell_at(map.grid.center(cell)).unwrap();
+        let (mode, entropy) = (belief.mode(here), belief.entropy(here));
+        let resolved = belief.is_known(here) && entropy <= 0.6;
+        unsure += usize::from(belief.is_known(here) && !resolved);
+        let expected = match *read {
+            MapCell::Occupancy(p) if p < 0.5 => (0, resolved && mode <= 0.2),
+            MapCell::Occupancy(_) => (1, resolved && mode >= 0.5),
+            MapCell::Unknown => (2, !resolved || (mode > 0.2 && mode < 0.5)),
+        };
+        found[expected.0] += 1;
+        assert!(expected.1, "{here:?} is {read:?}: {mode} {entropy}");
     }
-    assert!(unknown > 0 && unknown < map.grid.len());
+    assert_eq!(found[..2], [free, occupied], "all that is not unknown is read back");
+    assert!(unsure > 0, "there are cells that are known, but not well");
+}
+
+#[test]
+fn thresholds_of_the_map_are_options_and_the_files_name_them() {
+    let shell = Shell::new();
+    let yaml = || std::fs::read_to_string(shell.path("run/map.yaml")).unwrap();
+    let counts = |options: &str| {
+        shell.expect(&format!("{} {options}", short_run()), 3);
+        written(&shell).2
+    };
+    let usual = counts("");
+    let default = "# free (254): known, entropy <= 0.6 nats, most likely coverage <= 0.2\n";
+    assert!(yaml().contains(default), "{}", yaml());
+    let loose = counts("--map-entropy 1.1");
+    assert!(loose[0] > usual[0] && loose[1] > usual[1] && loose[2] < usual[2], "{loose:?}");
+    let strict = counts("--map-entropy 0.3 --map-free 0.1 --map-occupied 0.9");
+    assert!(strict[0] < usual[0] && strict[2] > usual[2], "{strict:?}");
+    for line in [
+        "# free (254): known, entropy <= 0.3 nats, most likely coverage <= 0.1\n",
+        "# occupied (0): known, entropy <= 0.3 nats, most likely coverage >= 0.9\n",
+    ] {
+        assert!(yaml().contains(line), "{}", yaml());
+    }
+    for wrong in ["--map-entropy=-1", "--map-free 1.5", "--map-occupied wide"] {
+        let typed = shell.expect(&format!("{} {wrong}", short_run()), 2);
+        assert!(typed.err.contains("it must lie in") || typed.err.contains("not a number"));
+    }
+}
+
+#[test]
+fn the_map_of_a_run_is_a_world_whose_unknown_cells_are_solid() {
+    let shell = Shell::new();
+    shell.expect(&short_run(), 3);
+    let free = written(&shell).2[0];
+    let again = "explore run/map.yaml --resolution 0.2 --max-scans 3 --out again";
+    let typed = shell.expect(again, 3);
+    #[allow(clippy::cast_precision_loss, reason = "some hundred cells")]
+    let area = format!("run/map.yaml: {:.2} m² free", 0.04 * free as f64);
+    assert!(typed.out.starts_with(&area), "{area}: {typed:?}");
 }
 
 #[test]

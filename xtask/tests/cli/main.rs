@@ -11,6 +11,8 @@ mod figures;
 mod fit;
 mod interrupt;
 mod map;
+mod maps;
+mod no_worlds;
 mod readings;
 mod tables;
 mod typed;

@@ -4,7 +4,7 @@ use crate::typed::{Shell, shipped};
 use covmap::CoverageMap;
 use covmap_explore::{Event, TraceHeader};
 use covmap_io::log::{LogOptions, LogReader, Sensor};
-use covmap_io::{load_map_server, read_json_lines};
+use covmap_io::{MapCell, load_map_server, read_json_lines};
 use covmap_sonar::{Range, Scan, SonarRing};
 use std::fmt::Write;
 use std::path::Path;
@@ -71,7 +71,15 @@ fn a_log_becomes_a_map_with_all_its_files() {
     let mode = |x, y| map.mode(map.grid().cell_at(nalgebra::Point2::new(x, y)).unwrap());
     assert!(mode(1.0, 0.05) < 0.1 && mode(0.5, 0.05) < 0.1, "free on the way");
     assert!(mode(2.25, 0.05) > 0.9 && mode(0.45, 1.25) > 0.9, "covered where the echoes are from");
-    assert_eq!(load_map_server(folder.join("map.yaml")).unwrap().grid.width(), map.grid().width());
+    let saved = load_map_server(folder.join("map.yaml")).unwrap();
+    let driven = saved.grid.cell_at(nalgebra::Point2::new(1.0, 0.05)).unwrap();
+    assert_eq!(saved.cells.get(driven), Some(&MapCell::Occupancy(0.0)));
+    let image = std::fs::read(folder.join("map.pgm")).unwrap();
+    let greys = &image[image.len() - map.grid().len()..];
+    let count = |grey: u8| greys.iter().filter(|g| **g == grey).count();
+    let line =
+        format!("map.pgm: {} free, {} occupied, {} unknown", count(254), count(0), count(205));
+    assert!(typed.out.contains(&line), "{typed:?}");
 }
 
 #[test]

@@ -12,6 +12,9 @@ use std::path::Path;
 /// The largest description that is read \[bytes\].
 const MAX_YAML: u64 = 64 << 10;
 
+/// The largest yaw, some 160,000 turns: the sine of more is no longer exact \[rad\].
+const MAX_YAW: f64 = 1e6;
+
 /// How samples become occupancy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mode {
@@ -28,6 +31,8 @@ pub(crate) struct Description {
     pub(crate) resolution: f64,
     /// The lower left corner of the lower left pixel \[m\].
     pub(crate) lower_left: Point2<f64>,
+    /// By how much the map is turned about that corner, counter-clockwise \[rad\].
+    pub(crate) yaw: f64,
     pub(crate) negate: bool,
     pub(crate) occupied: f64,
     pub(crate) free: f64,
@@ -39,14 +44,14 @@ pub(crate) struct Description {
 struct Keys {
     image: Option<String>,
     resolution: Option<f64>,
-    origin: Option<[f64; 3]>,
+    origin: Option<Vec<f64>>,
     negate: Option<Negate>,
     occupied_thresh: Option<f64>,
     free_thresh: Option<f64>,
     mode: Option<String>,
 }
 
-/// `0`, `1`, `true` or `false`: all are found in the field.
+/// `0`, `1`, or a truth value: all are found in the field.
 struct Negate(bool);
 
 impl<'de> Deserialize<'de> for Negate {
@@ -59,6 +64,13 @@ impl<'de> Deserialize<'de> for Negate {
             }
             fn visit_bool<E: Error>(self, value: bool) -> Result<Negate, E> {
                 Ok(Negate(value))
+            }
+            fn visit_str<E: Error>(self, value: &str) -> Result<Negate, E> {
+                match value.to_ascii_lowercase().as_str() {
+                    "1" | "true" | "yes" | "on" => Ok(Negate(true)),
+                    "0" | "false" | "no" | "off" => Ok(Negate(false)),
+                    _ => Err(E::invalid_value(Unexpected::Str(value), &self)),
+                }
             }
             fn visit_u64<E: Error>(self, value: u64) -> Result<Negate, E> {
                 match value {
@@ -90,7 +102,8 @@ impl Description {
         }
         let image = required(keys.image.filter(|name| !name.is_empty()), "image")?;
         let resolution = required(keys.resolution, "resolution")?;
-        let [x, y, yaw] = required(keys.origin, "origin")?;
+        let origin = required(keys.origin, "origin")?;
+        let [x, y, yaw] = *origin else { return Err(MapServerError::Origin(origin.len())) };
         let Negate(negate) = required(keys.negate, "negate")?;
         let occupied = required(keys.occupied_thresh, "occupied_thresh")?;
         let free = required(keys.free_thresh, "free_thresh")?;
@@ -98,19 +111,20 @@ impl Description {
         // A map of one cell stands for all that the image can be: the numbers are checked
         // before the image is read.
         Grid::new(lower_left, resolution, 1, 1)?;
-        if yaw != 0.0 {
+        if yaw.is_nan() || yaw.abs() > MAX_YAW {
             return Err(MapServerError::Yaw(yaw));
         }
         if !(0.0 <= free && free <= occupied && occupied <= 1.0) {
             return Err(MapServerError::Thresholds { free, occupied });
         }
-        let mode = match keys.mode.as_deref() {
-            None | Some("trinary") => Mode::Trinary,
-            Some("scale") => Mode::Scale,
-            Some("raw") => Mode::Raw,
-            Some(other) => return Err(MapServerError::Mode(other.to_string())),
+        let mode = keys.mode.unwrap_or_else(|| "trinary".into());
+        let mode = match mode.to_ascii_lowercase().as_str() {
+            "trinary" => Mode::Trinary,
+            "scale" => Mode::Scale,
+            "raw" => Mode::Raw,
+            _ => return Err(MapServerError::Mode(mode)),
         };
-        Ok(Self { image, resolution, lower_left, negate, occupied, free, mode })
+        Ok(Self { image, resolution, lower_left, yaw, negate, occupied, free, mode })
     }
 }
 
@@ -121,16 +135,12 @@ fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, F
     };
     let fail = |error: &serde_saphyr::Error, field: String| {
         let (line, column) = error.location().map_or((1, 1), |at| (at.line(), at.column()));
-        let message = one_line(&error.to_string());
-        // The parser ends its sentence with a place, which the error already begins with.
-        let place = format!(" at line {line}, column {column}");
-        let message = message.strip_suffix(&place).unwrap_or(&message).to_string();
         FileError::Syntax {
             path: path.to_path_buf(),
             line: usize::try_from(line).unwrap_or(usize::MAX).max(1),
             column: usize::try_from(column).unwrap_or(usize::MAX).max(1),
             field,
-            message,
+            message: in_words(error),
         }
     };
     let mut field = String::new();
@@ -141,6 +151,30 @@ fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, F
         })
     });
     value.map_err(|error| fail(&error, field))
+}
+
+/// What is wrong, to one who wrote the file: the parser speaks to one who calls it.
+fn in_words(error: &serde_saphyr::Error) -> String {
+    use serde_saphyr::Error;
+    match error {
+        Error::DuplicateMappingKey { key: Some(key), .. } => {
+            format!("the key `{key}` stands there twice")
+        }
+        Error::MultipleDocuments { .. } => "a second document begins here: a map is one".into(),
+        Error::NullIntoString { .. } => "has no value".into(),
+        Error::InvalidScalar { .. } => "expected a number".into(),
+        Error::NonFiniteFloat { value, .. } => format!("{value} is no finite number"),
+        Error::SerdeInvalidType { unexpected, expected, .. } => {
+            one_line(&format!("invalid type: {unexpected}, expected {expected}"))
+        }
+        Error::SerdeInvalidValue { unexpected, expected, .. } => {
+            one_line(&format!("invalid value: {unexpected}, expected {expected}"))
+        }
+        Error::Unexpected { expected, .. } => format!("expected {expected}"),
+        Error::ExternalMessage { msg, .. } => format!("is no YAML: {}", one_line(msg)),
+        Error::Budget { .. } => "is nested too deeply, or too long, for a map".into(),
+        _ => "is not written as YAML wants it".into(),
+    }
 }
 
 #[cfg(test)]
@@ -174,15 +208,26 @@ mod tests {
         assert_eq!(description.lower_left, Point2::new(-8.0, 2.0));
         assert_eq!((description.occupied, description.free), (0.65, 0.196));
         assert_eq!((description.mode, description.negate), (Mode::Trinary, false));
-        for (word, mode) in [("trinary", Mode::Trinary), ("scale", Mode::Scale), ("raw", Mode::Raw)]
-        {
+        for (word, mode) in [
+            ("trinary", Mode::Trinary),
+            ("Trinary", Mode::Trinary),
+            ("\"SCALE\"", Mode::Scale),
+            ("raw", Mode::Raw),
+        ] {
             assert_eq!(load(&format!("{GOOD}mode: {word}")).unwrap().mode, mode);
         }
     }
 
     #[test]
     fn negate_may_be_a_number_or_a_word() {
-        for (word, negate) in [("0", false), ("1", true), ("true", true), ("false", false)] {
+        for (word, negate) in [
+            ("0", false),
+            ("1", true),
+            ("true", true),
+            ("False", false),
+            ("yes", true),
+            ("off", false),
+        ] {
             let text = GOOD.replace("negate: 0", &format!("negate: {word}"));
             assert_eq!(load(&text).unwrap().negate, negate);
         }
@@ -203,9 +248,11 @@ mod tests {
         refuse("resolution", "resolution: -0.1", "the resolution -0.1 m");
         refuse("resolution", "resolution: .nan", "the resolution NaN m");
         refuse("resolution", "resolution: fine", "map.yaml:2:13: resolution: ");
-        refuse("origin", "origin: [0, 0, 0.1]", "a yaw of 0.1 rad");
-        refuse("origin", "origin: [0, 0, .nan]", "a yaw of NaN rad");
-        refuse("origin", "origin: [0, 0]", "map.yaml:3:");
+        refuse("origin", "origin: [0, 0, .nan]", "a yaw of NaN, which must be");
+        refuse("origin", "origin: [0, 0, -.inf]", "a yaw of -inf, which must be");
+        refuse("origin", "origin: [0, 0]", "three numbers, not 2");
+        refuse("origin", "origin: [0, 0, 0, 0]", "three numbers, not 4");
+        refuse("origin", "origin: 3", "map.yaml:3:9: origin: ");
         refuse("origin", "origin: [.inf, 0, 0]", "must be finite");
         refuse(
             "negate",
@@ -215,8 +262,52 @@ mod tests {
         refuse("free_thresh", "free_thresh: 0.9", "must be in order");
         refuse("occupied_thresh", "occupied_thresh: .nan", "must be in order");
         refuse("negate", "negate: 0\nmode: color", "the mode `color` is none of");
-        refuse("image", "image: [", "map.yaml:");
-        refuse("image", "image: a\nimage: b", "map.yaml:2:");
+        refuse("occupied_thresh", "occupied_thresh: 65", "must be in order");
+    }
+
+    #[test]
+    fn the_parser_gives_no_advice_about_itself() {
+        refuse("image", "image: a\nimage: b", "map.yaml:2:1: the key `image` stands there twice");
+        refuse("image", "image: a\n---\nimage: b", "a second document begins here");
+        refuse("resolution", "resolution: fine", "map.yaml:2:13: resolution: expected a number");
+        refuse("negate", "negate: .nan", "map.yaml:4:9: negate: .nan is no finite number");
+        refuse(
+            "negate",
+            "negate: maybe",
+            "negate: invalid value: string \"maybe\", expected 0 or 1",
+        );
+        refuse("negate", "\tnegate: 0", "map.yaml:4:");
+        for line in [
+            "image: [",
+            "image: \"C:\\maps\"",
+            "image: {a",
+            "image: *none",
+            "image: !!binary aGk=x",
+            "image: ~",
+            "image: [a, b]",
+            "image: a: b",
+            "<<: 3",
+            "image: !include x.yaml",
+            "%YAML 9",
+            "image: &a [*a]",
+        ] {
+            let text = GOOD.replace("image: map.pgm", line);
+            let Err(error) = load(&text) else { continue };
+            for word in ["Option", "olicy", "from_str", "serde", "configured", "parser"] {
+                assert!(!error.contains(word), "{line}: {error}");
+            }
+        }
+    }
+
+    #[test]
+    fn integers_byte_order_marks_and_line_ends_of_windows_are_read() {
+        let text = GOOD.replace("0.65", "1").replace("0.196", "0").replace("0.05", "1");
+        let text = format!("\u{feff}{}", text.replace('\n', "\r\n"));
+        let description = load(&text).unwrap();
+        assert_eq!((description.occupied, description.free), (1.0, 0.0));
+        assert_eq!((description.resolution, description.image.as_str()), (1.0, "map.pgm"));
+        let text = GOOD.replace("map.pgm", r"C:\maps\room.pgm");
+        assert_eq!(load(&text).unwrap().image, r"C:\maps\room.pgm");
     }
 
     #[test]

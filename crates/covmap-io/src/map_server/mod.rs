@@ -1,11 +1,15 @@
 //! The maps of ROS: a YAML file that describes an image.
 
 mod description;
+mod image;
 mod load;
+mod map;
 mod save;
 
-pub use load::{MapCell, MapServerMap, load_map_server};
-pub use save::{CoverageThresholds, save_map_server};
+pub use image::ImageError;
+pub use load::load_map_server;
+pub use map::{MapAreas, MapCell, MapServerMap};
+pub use save::{MapCounts, MapThresholds, save_map_server};
 
 use covmap::GridError;
 
@@ -15,9 +19,15 @@ pub enum MapServerError {
     /// A key is missing.
     #[error("the key `{0}` is missing")]
     Missing(&'static str),
-    /// The map is turned.
-    #[error("the origin has a yaw of {0} rad; only maps that are not turned (yaw 0) are read")]
+    /// The origin has another number of values than three.
+    #[error("the origin is [x, y, yaw], in metres and radians: three numbers, not {0}")]
+    Origin(usize),
+    /// The yaw is no angle.
+    #[error("the origin has a yaw of {0}, which must be a finite number of radians")]
     Yaw(f64),
+    /// Nothing is known.
+    #[error("all of its {0} × {1} pixels are unknown, so there is no map; look at the thresholds")]
+    Unknown(usize, usize),
     /// The thresholds are no thresholds.
     #[error("free_thresh {free} and occupied_thresh {occupied} must be in order, and in 0..=1")]
     Thresholds {
