@@ -68,9 +68,9 @@ pub(crate) fn run(
     plan.notes.iter().for_each(|note| tell(&Step::Note(note.clone())));
     let strangers = folder.strangers(&plan.manifest)?;
     if strangers > 0 {
-        let files = if strangers == 1 { "file is" } else { "files are" };
+        let files = if strangers == 1 { "file" } else { "files" };
         tell(&Step::Note(format!(
-            "{}: {strangers} {files} of another version of covmap, and not used",
+            "{}: {strangers} {files} that this version of covmap did not write stay there unused",
             options.out.display()
         )));
     }
