@@ -2,10 +2,11 @@
 
 use crate::arguments::Log;
 use crate::input::about;
+use crate::run_path::RunPath;
 use crate::trace_file::{self, read_header};
 use crate::{output, say};
 use anyhow::Result;
-use covmap_explore::Event;
+use covmap_explore::{Event, TraceHeader};
 use covmap_io::log::{CarmenWriter, CarmenWriterError};
 use covmap_io::{FileError, NewFile, read_json_lines};
 use covmap_sonar::SonarRing;
@@ -19,27 +20,40 @@ pub(crate) fn run(arguments: &Log) -> Result<ExitCode> {
     let header = read_header(&trace)?;
     let (ring, _) = header.config.build().map_err(about(&trace))?;
     let mut file = NewFile::create(out, replace)?;
-    let scans = write(&trace, &ring, (out, &mut file))?;
+    let scans = write(&trace, (&header, &ring), (out, &mut file))?;
     file.finish()?;
     say::line(format!("{scans} scans, {}", out.display()));
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the scans of a trace, one by one. Its last line may be cut short.
-fn write(trace: &Path, ring: &SonarRing, (out, file): (&Path, &mut NewFile)) -> Result<usize> {
+/// Writes the scans of a trace, one by one, and where the robot drove between them. Its last line
+/// may be cut short.
+fn write(
+    trace: &Path,
+    (header, ring): (&TraceHeader, &SonarRing),
+    (out, file): (&Path, &mut NewFile),
+) -> Result<usize> {
     let fail = |error| match error {
         CarmenWriterError::Io(error) => about(out)(format!("cannot be written: {error}")),
         error => about(trace)(error.to_string()),
     };
     let mut log = CarmenWriter::new(ring, file).map_err(fail)?;
+    let mut path = RunPath::new(header);
     // The first line is the header, which is no event.
     for event in read_json_lines::<Event>(trace)?.skip(1) {
-        match event {
+        let event = match event {
             Err(FileError::Truncated { .. }) => break,
-            Err(error) => return Err(error.into()),
-            Ok(Event::Scan { scan, .. }) => log.write(&scan).map_err(fail)?,
-            Ok(_) => {}
+            event => event?,
+        };
+        for (time, pose) in path.follow(&event) {
+            log.pass(time, &pose).map_err(fail)?;
         }
+        if let Event::Scan { scan, .. } = &event {
+            log.write(scan).map_err(fail)?;
+        }
+    }
+    for (time, pose) in path.rest() {
+        log.pass(time, &pose).map_err(fail)?;
     }
     log.finish().map_err(fail)
 }

@@ -6,19 +6,20 @@ use crate::interrupt::{self, Interrupt};
 use crate::map_pictures::MapPictures;
 use crate::mapper::{Log, Mapper, Stride, Survey};
 use crate::progress::Progress;
-use crate::{input, memory, output, results, say};
+use crate::{input, map_report, memory, output, results};
 use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_explore::Config;
-use covmap_io::log::{LogOptions, Sensor, Skipped};
+use covmap_io::log::{LogOptions, Readings, Sensor, SensorAccount, Skipped};
 use covmap_io::{MapCounts, OutputFolder, write_json};
 use covmap_model::{Footprint, FootprintRule, SensorModel};
 use covmap_plan::BodyEvidence;
 use covmap_sonar::{Beam, SonarRing};
 use serde::Serialize;
-use std::iter::once;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// A sensor's axis may pass the robot's centre at this distance, and sectors from the centre
@@ -34,26 +35,47 @@ pub(crate) struct MapSummary {
     /// r \[m\].
     pub(crate) resolution: f64,
     /// Frames of the log: skipped, standing, or scans of the map.
-    frames: usize,
+    pub(crate) frames: usize,
     skipped: usize,
-    standing: usize,
+    pub(crate) standing: usize,
     pub(crate) scans: usize,
-    /// Places where the poses jump by more than a metre.
-    jumps: usize,
+    /// Places where the poses jump, so that nobody knows the way.
+    pub(crate) jumps: usize,
     pub(crate) path_length_m: f64,
-    cells: CellCounts,
+    pub(crate) cells: CellCounts,
     /// The share of the known cells that the body did not pin with an entropy above .65.
-    share_entropy_above_0_65: f64,
-    seconds: f64,
+    pub(crate) share_entropy_above_0_65: f64,
+    pub(crate) seconds: f64,
+    /// All readings of the log, by the lines that they stand in.
+    readings: BTreeMap<&'static str, ReadingCounts>,
+    /// What the map depends on, and what says so.
+    pub(crate) taken_from: Vec<String>,
+    /// What else there is to know of the log.
+    pub(crate) remarks: Vec<String>,
     /// What was lost of the log, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
-    warning: Option<String>,
+    pub(crate) warning: Option<String>,
 }
 
 #[derive(Debug, Serialize)]
-struct CellCounts {
-    known: usize,
-    unknown: usize,
+pub(crate) struct CellCounts {
+    pub(crate) known: usize,
+    pub(crate) unknown: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct ReadingCounts {
+    echoes: usize,
+    no_echoes: usize,
+    missing: usize,
+    skipped: usize,
+}
+
+impl From<Readings> for ReadingCounts {
+    fn from(readings: Readings) -> Self {
+        let Readings { echoes, no_echoes, missing, skipped } = readings;
+        Self { echoes, no_echoes, missing, skipped }
+    }
 }
 
 pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
@@ -66,8 +88,9 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
         return Ok(interrupt::EXIT_CODE.into());
     };
     interrupt.done();
-    let (model, remark) = model(&config, arguments.sensor, &survey.ring)?;
-    let grid = survey.grid(&model, config.robot.radius, &log.path)?;
+    let (models, remark) = models(&config, arguments.sensor, &survey)?;
+    let reach = models.iter().fold(0.0f64, |most, (_, model)| most.max(model.max_reach()));
+    let grid = survey.grid((config.resolution, reach), config.robot.radius, &log.path)?;
     memory::check_map(&grid, &config).map_err(about(&log.path))?;
     let body =
         (config.planner.body_evidence == BodyEvidence::Belief).then_some(config.robot.radius);
@@ -76,18 +99,19 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     let inputs = [Some(&arguments.log), arguments.poses.as_ref(), arguments.config.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     let folder = output::folder(&folder_name(arguments)?, &run, arguments.force, &inputs)?;
-    let mapper = Mapper::new(grid, model, stride, body)?;
-    let mapper = log.map(&survey, mapper, &mut progress, &interrupt)?;
+    let mapper = Mapper::new((grid, config.model.bins), models, stride, body)?;
+    let mapper = log.map(mapper, &mut progress, &interrupt)?;
     interrupt.done();
     progress.say("drawing the map …");
     let seconds = begun.elapsed().as_secs_f64();
-    let summary = summary(arguments, &survey, &mapper, seconds);
+    let summary = summary(arguments, (&survey, remark), &mapper, seconds);
+    map_report::write_readings(&folder.path("readings.csv"), &survey)?;
     let counts = write(&folder, &mapper, &summary, (arguments, &config))?;
     let written = folder.finish()?;
     progress.finish();
     if !arguments.quiet {
-        let remarks: Vec<String> = once(results::map_line(&counts)).chain(remark).collect();
-        report(arguments, &summary, &remarks, &written);
+        let for_others = results::map_line(&counts);
+        map_report::tell(arguments, &summary, (&survey.account.sensors, &for_others), &written);
     }
     Ok(if mapper.stopped { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
 }
@@ -121,7 +145,24 @@ fn log(arguments: &Map, config: &Config) -> Result<Log> {
     Ok(Log { path: arguments.log.clone(), options })
 }
 
-/// The sensor model for the ring of a log, and what there is to remark about it.
+/// The rings of a log, each with its sensor model.
+type Models = Vec<(Arc<SonarRing>, SensorModel)>;
+
+/// The sensor models for the rings of a log, and what there is to remark about them.
+fn models(
+    config: &Config,
+    sensor: SensorName,
+    survey: &Survey,
+) -> Result<(Models, Option<String>)> {
+    let (mut models, mut remarks) = (Vec::new(), None);
+    for ring in &survey.rings {
+        let (model, remark) = model(config, sensor, ring)?;
+        models.push((Arc::clone(ring), model));
+        remarks = remarks.or(remark);
+    }
+    Ok((models, remarks))
+}
+
 fn model(
     config: &Config,
     sensor: SensorName,
@@ -201,10 +242,17 @@ fn run_line(arguments: &Map, config: &Config) -> Result<String> {
     Ok(output::run_line(&words, digest))
 }
 
-fn summary(arguments: &Map, survey: &Survey, mapper: &Mapper, seconds: f64) -> MapSummary {
+fn summary(
+    arguments: &Map,
+    (survey, remark): (&Survey, Option<String>),
+    mapper: &Mapper,
+    seconds: f64,
+) -> MapSummary {
     let map = &mapper.map;
     let known = map.grid().cells().filter(|cell| map.is_known(*cell)).count();
-    let skipped: &Skipped = &survey.skipped;
+    let account = &survey.account;
+    let skipped: &Skipped = &account.skipped;
+    let readings = |sensor: &SensorAccount| (sensor.lines, sensor.total().into());
     MapSummary {
         world: log_name(&arguments.log),
         sensor: sensor_name(arguments.sensor),
@@ -218,6 +266,9 @@ fn summary(arguments: &Map, survey: &Survey, mapper: &Mapper, seconds: f64) -> M
         cells: CellCounts { known, unknown: map.grid().len() - known },
         share_entropy_above_0_65: share_uncertain(map),
         seconds,
+        readings: account.sensors.iter().map(readings).collect(),
+        taken_from: map_report::taken_from(account),
+        remarks: account.remarks().into_iter().chain(remark).collect(),
         warning: warning(skipped, mapper),
     }
 }
@@ -259,27 +310,4 @@ fn write(
     // Last: whoever finds it finds all the others.
     write_json(folder.path("summary.json"), summary)?;
     Ok(counts)
-}
-
-fn report(arguments: &Map, summary: &MapSummary, remarks: &[String], written: &Path) {
-    let MapSummary { world, sensor, frames, standing, scans, jumps, .. } = summary;
-    say::line(format!("{world}, {sensor}: a map of {scans} scans"));
-    say::line(format!(
-        "  {frames} frames, {standing} of them nearer than {} m and {}° to the one used before",
-        arguments.every, arguments.every_degrees
-    ));
-    say::line(format!("  {:.1} m driven, {:.1} s", summary.path_length_m, summary.seconds));
-    if *jumps > 0 {
-        say::line(format!("  {jumps} jumps of more than 1 m, not taken for driven"));
-    }
-    say::line(format!(
-        "  cells: {} known, {} unknown; entropy above 0.65 nats in {:.1} % of the measured",
-        summary.cells.known,
-        summary.cells.unknown,
-        100.0 * summary.share_entropy_above_0_65
-    ));
-    for line in remarks.iter().chain(&summary.warning) {
-        say::line(format!("  {line}"));
-    }
-    say::line(format!("  {}", written.display()));
 }

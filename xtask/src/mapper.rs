@@ -3,21 +3,20 @@
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::trail::Trail;
+use crate::way::{Follower, Leg};
 use anyhow::{Result, anyhow, bail};
 use covmap::{CoverageMap, Grid, GridError};
-use covmap_io::log::{LogFrame, LogOptions, LogReader, Skipped};
+use covmap_io::log::{Account, LogError, LogFrame, LogOptions, LogReader, Sensor};
 use covmap_model::{OccupancyGrid, OccupancyParameters, SensorModel, integrate, integrate_body};
 use covmap_sonar::SonarRing;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-/// A path is followed in steps of at least this \[m\]: less is the trembling of a robot that
-/// stands.
-const SHORTEST_STEP: f64 = 0.01;
-/// Between poses farther apart than this \[m\] nobody knows the way.
-const LONGEST_STEP: f64 = 1.0;
 /// Cells around what can be seen.
 const MARGIN: usize = 2;
+/// A log has no more rings: lasers, and longest ranges that change on its way.
+const MOST_RINGS: usize = 16;
 
 /// Which frames are used: those that moved or turned enough.
 #[derive(Debug, Clone, Copy)]
@@ -48,10 +47,28 @@ pub(crate) struct Log {
 /// What is known of a log after reading it once.
 #[derive(Debug)]
 pub(crate) struct Survey {
-    pub(crate) ring: SonarRing,
-    pub(crate) skipped: Skipped,
+    /// One for each sensor, and for each of its longest ranges.
+    pub(crate) rings: Vec<Arc<SonarRing>>,
+    pub(crate) account: Account,
+    bounds: Bounds,
+}
+
+/// The rectangle in which the robot was.
+#[derive(Debug, Clone, Copy)]
+struct Bounds {
     low: Point2<f64>,
     high: Point2<f64>,
+}
+
+impl Bounds {
+    fn add(&mut self, at: Point2<f64>) {
+        *self = Self { low: self.low.inf(&at), high: self.high.sup(&at) };
+    }
+
+    /// Adds where the robot drove.
+    fn add_ends(&mut self, legs: &[Leg]) {
+        legs.iter().filter(|leg| !leg.jump).for_each(|leg| self.add(leg.to));
+    }
 }
 
 impl Log {
@@ -61,37 +78,49 @@ impl Log {
         progress: &mut Progress,
         interrupt: &Interrupt,
     ) -> Result<Option<Survey>> {
-        let mut reader = LogReader::open(&self.path, &self.options)?;
-        let first = reader.next().ok_or_else(|| anyhow!("{}: is empty", self.path.display()))??;
-        let here = Point2::from(first.scan.pose.translation.vector);
-        let (mut low, mut high, mut frames) = (here, here, 1u64);
+        let mut reader = self.open()?;
+        let (mut follower, mut frames) = (Follower::default(), 0u64);
+        let (mut rings, mut bounds): (Vec<Arc<SonarRing>>, Option<Bounds>) = (Vec::new(), None);
         for frame in &mut reader {
-            let here = Point2::from(frame?.scan.pose.translation.vector);
-            (low, high) = (low.inf(&here), high.sup(&here));
+            let frame = frame.map_err(hint)?;
+            if ring_number(&rings, &frame.ring).is_none() {
+                if rings.len() == MOST_RINGS {
+                    bail!("{}:{}: too many different sensors", self.path.display(), frame.line);
+                }
+                rings.push(Arc::clone(&frame.ring));
+            }
+            let at = Point2::from(frame.scan.pose.translation.vector);
+            let bounds = bounds.get_or_insert(Bounds { low: at, high: at });
+            bounds.add(at);
+            bounds.add_ends(&follower.follow(&frame));
             frames += 1;
             progress.tell(|| format!("reading the log: {frames} frames"));
             if interrupt.is_pressed() {
                 return Ok(None);
             }
         }
-        let skipped = reader.skipped().clone();
-        Ok(Some(Survey { ring: (*first.ring).clone(), skipped, low, high }))
+        let mut bounds = bounds.ok_or_else(|| anyhow!("{}: is empty", self.path.display()))?;
+        bounds.add_ends(&follower.rest(&reader.rest()));
+        Ok(Some(Survey { rings, account: reader.account().clone(), bounds }))
+    }
+
+    fn open(&self) -> Result<LogReader> {
+        LogReader::open(&self.path, &self.options).map_err(hint)
     }
 
     /// Reads the log once more, into the map, to its end or until that is stopped.
     pub(crate) fn map(
         &self,
-        survey: &Survey,
         mut mapper: Mapper,
         progress: &mut Progress,
         interrupt: &Interrupt,
     ) -> Result<Mapper> {
-        for frame in LogReader::open(&self.path, &self.options)? {
+        let mut reader = self.open()?;
+        for frame in &mut reader {
             let frame = frame?;
-            if *frame.ring != survey.ring {
+            if !mapper.add(&frame) {
                 bail!("{}: was changed while it was read", self.path.display());
             }
-            mapper.add(&frame);
             let (used, metres) = (mapper.scans, mapper.path_length);
             progress.tell(|| {
                 format!(
@@ -101,11 +130,27 @@ impl Log {
             });
             if interrupt.is_pressed() {
                 mapper.stopped = true;
-                break;
+                return Ok(mapper);
             }
+        }
+        for leg in mapper.follower.rest(&reader.rest()) {
+            mapper.step(&leg);
         }
         Ok(mapper)
     }
+}
+
+/// Names the option that reads what the log has.
+fn hint(error: LogError) -> anyhow::Error {
+    match error.other_sensor() {
+        Some(Sensor::Laser) => anyhow!("{error}; try --sensor laser"),
+        Some(Sensor::Sonar) => anyhow!("{error}; try --sensor sonar"),
+        None => error.into(),
+    }
+}
+
+fn ring_number(rings: &[Arc<SonarRing>], ring: &Arc<SonarRing>) -> Option<usize> {
+    rings.iter().position(|known| Arc::ptr_eq(known, ring) || known == ring)
 }
 
 /// The grid of a rectangle, with corners at multiples of the resolution.
@@ -122,14 +167,20 @@ pub(crate) fn grid_around(
 impl Survey {
     /// The grid of all cells that a model can learn of from where the robot was, with corners
     /// at multiples of the resolution.
-    pub(crate) fn grid(&self, model: &SensorModel, radius: f64, path: &Path) -> Result<Grid> {
-        let r = model.resolution();
+    pub(crate) fn grid(
+        &self,
+        (resolution, reach): (f64, f64),
+        radius: f64,
+        path: &Path,
+    ) -> Result<Grid> {
         let outermost =
             |most: f64, beam: &covmap_sonar::Beam| most.max(beam.pose.translation.vector.norm());
-        let reach = model.max_reach() + self.ring.beams().iter().fold(0.0, outermost);
+        let beams = self.rings.iter().flat_map(|ring| ring.beams());
+        let reach = reach + beams.fold(0.0, outermost);
         let around = Vector2::repeat(reach.max(radius));
-        grid_around(self.low - around, self.high + around, r, MARGIN).map_err(|error| {
-            let [a, b] = [self.low, self.high];
+        let Bounds { low, high } = self.bounds;
+        grid_around(low - around, high + around, resolution, MARGIN).map_err(|error| {
+            let [a, b] = [low, high];
             anyhow!(
                 "{}: the robot was between ({:.1}, {:.1}) and ({:.1}, {:.1}): {error}",
                 path.display(),
@@ -142,10 +193,19 @@ impl Survey {
     }
 }
 
+/// A sensor of a log, with its model.
+#[derive(Debug)]
+struct MappedSensor {
+    ring: Arc<SonarRing>,
+    model: SensorModel,
+    last_used: Option<Isometry2<f64>>,
+}
+
 /// A map that grows frame by frame.
 #[derive(Debug)]
 pub(crate) struct Mapper {
-    model: SensorModel,
+    sensors: Vec<MappedSensor>,
+    follower: Follower,
     stride: Stride,
     /// The robot's radius \[m\], if its body is evidence.
     body: Option<f64>,
@@ -162,21 +222,21 @@ pub(crate) struct Mapper {
     pub(crate) stopped: bool,
     pub(crate) first: Option<Isometry2<f64>>,
     pub(crate) last: Option<Isometry2<f64>>,
-    last_used: Option<Isometry2<f64>>,
-    last_step: Option<Point2<f64>>,
 }
 
 impl Mapper {
     pub(crate) fn new(
-        grid: Grid,
-        model: SensorModel,
+        (grid, bins): (Grid, usize),
+        models: Vec<(Arc<SonarRing>, SensorModel)>,
         stride: Stride,
         body: Option<f64>,
     ) -> Result<Self> {
+        let sensor = |(ring, model)| MappedSensor { ring, model, last_used: None };
         Ok(Self {
-            map: CoverageMap::new(grid, model.parameters().bins)?,
+            map: CoverageMap::new(grid, bins)?,
             occupancy: OccupancyGrid::new(grid, OccupancyParameters::default()),
-            model,
+            sensors: models.into_iter().map(sensor).collect(),
+            follower: Follower::default(),
             stride,
             body,
             trail: Trail::default(),
@@ -187,44 +247,43 @@ impl Mapper {
             stopped: false,
             first: None,
             last: None,
-            last_used: None,
-            last_step: None,
         })
     }
 
-    fn add(&mut self, frame: &LogFrame) {
+    /// Takes in a frame; `false` if its sensor is not known.
+    fn add(&mut self, frame: &LogFrame) -> bool {
         let pose = frame.scan.pose;
         self.first.get_or_insert(pose);
         self.last = Some(pose);
-        self.step(Point2::from(pose.translation.vector));
-        if !self.stride.takes(self.last_used.as_ref(), &pose) {
-            self.standing += 1;
-            return;
+        for leg in self.follower.follow(frame) {
+            self.step(&leg);
         }
-        self.last_used = Some(pose);
+        let is_it = |sensor: &&mut MappedSensor| {
+            Arc::ptr_eq(&sensor.ring, &frame.ring) || sensor.ring == frame.ring
+        };
+        let Some(sensor) = self.sensors.iter_mut().find(is_it) else { return false };
+        if !self.stride.takes(sensor.last_used.as_ref(), &pose) {
+            self.standing += 1;
+            return true;
+        }
+        sensor.last_used = Some(pose);
         self.scans += 1;
-        integrate(&self.model, &mut self.map, &frame.scan);
-        self.occupancy.integrate(&self.model, &frame.scan);
+        integrate(&sensor.model, &mut self.map, &frame.scan);
+        self.occupancy.integrate(&sensor.model, &frame.scan);
+        true
     }
 
     /// Follows the path, which the body has swept.
-    fn step(&mut self, to: Point2<f64>) {
-        let from = self.last_step.unwrap_or(to);
-        let length = (to - from).norm();
-        if self.last_step.is_some() && length < SHORTEST_STEP {
-            return;
-        }
-        let jump = length > LONGEST_STEP;
-        self.last_step = Some(to);
-        self.trail.push(to, jump);
-        if jump {
+    fn step(&mut self, leg: &Leg) {
+        self.trail.push(leg.to, leg.jump);
+        if leg.jump {
             self.jumps += 1;
         } else {
-            self.path_length += length;
+            self.path_length += (leg.to - leg.from).norm();
         }
         if let Some(radius) = self.body {
-            let from = if jump { to } else { from };
-            for change in integrate_body(&mut self.map, from, to, radius) {
+            let from = if leg.swept && !leg.jump { leg.from } else { leg.to };
+            for change in integrate_body(&mut self.map, from, leg.to, radius) {
                 self.occupancy.pin_free(change.cell);
             }
         }

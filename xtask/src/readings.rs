@@ -9,7 +9,7 @@ use crate::input::{self, about};
 use crate::interrupt::{self, Interrupt};
 use crate::mapper::Stride;
 use crate::progress::Progress;
-use crate::recorded::frames;
+use crate::recorded::{Frames, frames};
 use crate::{csv_file, output, say};
 use anyhow::{Result, bail};
 use covmap_explore::Config;
@@ -24,6 +24,7 @@ use nalgebra::{Isometry2, Point2, Translation2};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use std::sync::Arc;
 use table::Table;
 
 /// Free space around the walls of a survey \[m\].
@@ -33,6 +34,8 @@ const MARGIN: f64 = 1.0;
 const CONE: f64 = 7.5 * std::f64::consts::PI / 180.0;
 /// The noise of so many seeds makes the shares of the simulated readings.
 const SEEDS: u64 = 4;
+/// Scans of sonar and laser whose times differ by no more are of the same frame \[s\].
+const SAME_TIME: f64 = 1e-6;
 
 /// A reading of a real sonar, and what there is by the laser.
 struct Reading {
@@ -156,6 +159,34 @@ fn fit(
     Ok(turned(&place))
 }
 
+/// The scans of a log in the order of time.
+struct ByTime<'a> {
+    frames: &'a Frames,
+    order: Vec<usize>,
+}
+
+impl<'a> ByTime<'a> {
+    fn new(frames: &'a Frames) -> Self {
+        let mut order: Vec<usize> = (0..frames.scans.len()).collect();
+        order.sort_by(|a, b| frames.scans[*a].1.time.total_cmp(&frames.scans[*b].1.time));
+        Self { frames, order }
+    }
+
+    /// The scan of a time; where a clock shows it again and again, that of the nearest line.
+    fn beside(&self, time: f64, line: usize) -> Option<&'a (Arc<SonarRing>, Scan)> {
+        let time_of = |at: &usize| self.frames.scans[*at].1.time;
+        let line_of = |at: &usize| self.frames.lines[*at];
+        let first = self.order.partition_point(|at| time_of(at) < time - SAME_TIME);
+        let end = self.order.partition_point(|at| time_of(at) <= time + SAME_TIME);
+        // Those of one time are in the order of their lines.
+        let same = &self.order[first..end];
+        let after = same.partition_point(|at| line_of(at) < line);
+        let around = &same[after.saturating_sub(1)..(after + 1).min(same.len())];
+        let nearest = around.iter().min_by_key(|at| line_of(at).abs_diff(line))?;
+        Some(&self.frames.scans[*nearest])
+    }
+}
+
 impl Recording {
     fn read(arguments: &Arguments, config: &Config) -> Result<Self> {
         let Arguments { log, poses, truth, .. } = arguments;
@@ -169,14 +200,16 @@ impl Recording {
         let sonar = frames(log, poses.as_deref(), Sensor::Sonar, ring.clone())?;
         let laser = frames(log, poses.as_deref(), Sensor::Laser, ring)?;
         let stride = Stride { every: arguments.every, turn: arguments.every_degrees.to_radians() };
-        let mut lasers = laser.scans.iter().peekable();
+        if !arguments.quiet {
+            for account in [&sonar.account, &laser.account] {
+                let lost = (!account.skipped.is_empty()).then(|| account.skipped.to_string());
+                account.remarks().into_iter().chain(lost).for_each(say::note);
+            }
+        }
+        let lasers = ByTime::new(&laser);
         let (mut last, mut found) = (None, Vec::new());
-        for (ring, scan) in &sonar.scans {
-            while lasers.next_if(|(_, l)| l.time < scan.time - 1e-6).is_some() {}
-            let Some((laser_ring, laser)) = lasers.next_if(|(_, l)| l.time < scan.time + 1e-6)
-            else {
-                continue;
-            };
+        for ((ring, scan), line) in sonar.scans.iter().zip(&sonar.lines) {
+            let Some((laser_ring, laser)) = lasers.beside(scan.time, *line) else { continue };
             if !stride.takes(last.as_ref(), &scan.pose) {
                 continue;
             }

@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 use covmap::{CoverageMap, Raster};
 use covmap_explore::Config;
 use covmap_fit::Example;
-use covmap_io::log::{LogOptions, LogReader, Sensor, Skipped};
+use covmap_io::log::{Account, LogOptions, LogReader, Sensor};
 use covmap_io::read_ron;
 use covmap_model::integrate_body;
 use covmap_sonar::{Scan, SonarRing};
@@ -41,10 +41,32 @@ pub(crate) struct Recorded {
 /// All scans of one sensor of a log.
 pub(crate) struct Frames {
     pub(crate) scans: Vec<(Arc<SonarRing>, Scan)>,
-    pub(crate) skipped: Skipped,
+    /// The line of each.
+    pub(crate) lines: Vec<usize>,
+    pub(crate) account: Account,
+}
+
+/// So many readings are held at the same time, in some 300 MB.
+const MOST_READINGS: usize = 16_000_000;
+/// A scan is as large as so many readings, without its own.
+const SCAN_SIZE: usize = 8;
+
+/// How much of a log is held.
+#[derive(Debug, Default)]
+struct Held(usize);
+
+impl Held {
+    /// Adds a scan; `false` if that is too much.
+    fn add(&mut self, scan: &Scan) -> bool {
+        self.0 += scan.ranges.len() + SCAN_SIZE;
+        self.0 <= MOST_READINGS
+    }
 }
 
 /// Reads all scans of a log; `ring` stands in for what the log does not say.
+///
+/// # Errors
+/// If the log cannot be read, or has more readings than are held.
 pub(crate) fn frames(
     log: &Path,
     poses: Option<&Path>,
@@ -53,12 +75,20 @@ pub(crate) fn frames(
 ) -> Result<Frames> {
     let options = LogOptions { sensor, ring, poses: poses.map(Path::to_path_buf) };
     let mut reader = LogReader::open(log, &options)?;
-    let mut scans = Vec::new();
+    let (mut scans, mut lines, mut held) = (Vec::new(), Vec::new(), Held::default());
     for frame in &mut reader {
         let frame = frame?;
+        if !held.add(&frame.scan) {
+            bail!(
+                "{}:{}: more than {MOST_READINGS} readings are not held at the same time; cut the log, or thin it out",
+                log.display(),
+                frame.line
+            );
+        }
         scans.push((frame.ring, frame.scan));
+        lines.push(frame.line);
     }
-    Ok(Frames { scans, skipped: reader.skipped().clone() })
+    Ok(Frames { scans, lines, account: reader.account().clone() })
 }
 
 impl Recorded {
@@ -136,4 +166,25 @@ fn counted(
         let is = |raster: &Raster<bool>| raster.get(cell) == Some(&true);
         is(seen) && !body.is_pinned(cell) && (is(&sight.in_sight) || is(&sight.first_solid))
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use covmap_sonar::Range;
+    use nalgebra::Isometry2;
+
+    #[test]
+    fn not_more_of_a_log_is_held_than_fits() {
+        let scan = |beams| Scan {
+            pose: Isometry2::identity(),
+            time: 0.0,
+            ranges: vec![Range::Missing; beams],
+        };
+        let (laser, mut held) = (scan(361), Held::default());
+        // Two and a half hours at 4.7 Hz.
+        assert_eq!((0..100_000).take_while(|_| held.add(&laser)).count(), 43_360);
+        let (empty, mut held) = (scan(0), Held::default());
+        assert_eq!((0..9_000_000).take_while(|_| held.add(&empty)).count(), 2_000_000);
+    }
 }

@@ -2,6 +2,7 @@
 
 use crate::arguments::Survey as Arguments;
 use crate::input::about;
+use crate::map_report::taken_from;
 use crate::recorded::{Frames, frames};
 use crate::{output, say};
 use anyhow::{Result, bail};
@@ -53,8 +54,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     write_file(out, to_ron(out, &survey, Some(&comment))?.as_bytes(), replace)?;
     if !quiet {
         say::line(format!("{} walls, {} posts", survey.walls.len(), survey.posts.len()));
-        if !found_in.skipped.is_empty() {
-            say::line(format!("  {}", found_in.skipped));
+        let account = &found_in.account;
+        let lost = (!account.skipped.is_empty()).then(|| account.skipped.to_string());
+        for line in taken_from(account).into_iter().chain(account.remarks()).chain(lost) {
+            say::line(format!("  {line}"));
         }
         say::line(format!("  {}, {}", out.display(), image.display()));
     }

@@ -10,6 +10,7 @@ mod explore;
 mod figures;
 mod fit;
 mod interrupt;
+mod logs_as_they_are;
 mod map;
 mod maps;
 mod no_worlds;

@@ -9,8 +9,9 @@ use covmap_sonar::{Range, Scan, SonarRing};
 use std::fmt::Write;
 use std::path::Path;
 
-const FILES: [&str; 7] = [
+const FILES: [&str; 8] = [
     "summary.json",
+    "readings.csv",
     "belief.bin",
     "map.pgm",
     "map.yaml",
@@ -18,7 +19,7 @@ const FILES: [&str; 7] = [
     "entropy.png",
     "occupancy.png",
 ];
-const KEYS: [&str; 12] = [
+const KEYS: [&str; 15] = [
     "world",
     "sensor",
     "resolution",
@@ -31,6 +32,9 @@ const KEYS: [&str; 12] = [
     "cells",
     "share_entropy_above_0_65",
     "seconds",
+    "readings",
+    "taken_from",
+    "remarks",
 ];
 
 /// Two sonars that look ahead and to the left, while the robot stands, and drives for a metre.
@@ -50,7 +54,8 @@ fn a_log_becomes_a_map_with_all_its_files() {
     let shell = Shell::new();
     shell.write("drive.log", drive());
     let typed = shell.expect("map drive.log --resolution 0.1 --every 0.08", 0);
-    assert!(typed.out.contains("30 frames") && !typed.out.contains("skipped"), "{typed:?}");
+    assert!(typed.out.contains("30 frames") && typed.out.contains(", 0 skipped"), "{typed:?}");
+    assert!(!typed.out.contains("skipped 0 of"), "{typed:?}");
     assert_eq!(typed.err, "", "nothing of the progress when piped");
     let folder = shell.path("out/drive-sonar-every0.08");
     for name in FILES {
@@ -121,7 +126,7 @@ fn bad_logs_are_refused() {
     shell.refuse("map none.log", &["none.log: cannot be read"]);
     shell.write("empty.log", "");
     shell.refuse("map empty.log", &["empty.log: has no scan", "there is no line SONAR"]);
-    shell.refuse("map empty.log --sensor laser", &["no line FLASER or ROBOTLASER1"]);
+    shell.refuse("map empty.log --sensor laser", &["no line FLASER, ROBOTLASER or RAWLASER"]);
     shell.write("binary.log", [0xff, 0xfe, 0x00]);
     shell.refuse("map binary.log", &["binary.log: has no scan"]);
     shell.write("packed.log", [0x1f, 0x8b, 8, 0, 1, 2]);
@@ -203,7 +208,13 @@ fn the_log_of_a_run_is_read_back_as_the_same_scans() {
     assert!(expected.iter().flat_map(|scan| &scan.ranges).any(|range| *range == Range::NoEcho));
 
     let typed = shell.expect("map run.log --resolution 0.2 --every 0 --out map", 0);
-    assert!(typed.out.contains("a map of 12 scans") && !typed.out.contains("cones"), "{typed:?}");
+    assert!(typed.out.contains("a map of 12 scans"), "{typed:?}");
+    assert!(!typed.out.contains("instead of sectors"), "{typed:?}");
+    // The robot drove for metres between two scans, and round corners.
+    let driven = |name: &str| shell.json(name)["path_length_m"].as_f64().unwrap();
+    let lost = driven("run/summary.json") - driven("map/summary.json");
+    assert!(lost.abs() < 0.03 && driven("run/summary.json") > 1.0, "{lost}");
+    assert_eq!(shell.json("map/summary.json")["jumps"], 0);
     shell.refuse("log nowhere --out a.log", &["nowhere/trace.jsonl: cannot be read"]);
     shell.refuse("log run --out run", &["run: cannot be written: it is a folder"]);
 }

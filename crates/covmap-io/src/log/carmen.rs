@@ -1,36 +1,38 @@
 //! CARMEN's text logs.
 
-use super::carmen_line::{LaserIdentity, LaserLine, SonarLine};
-use super::device::{Clock, Device, Measured, laser_beams};
+use super::carmen_line::{Described, LaserLine, SonarLine};
+use super::device::{Device, Measured, laser_beams};
 use super::fields::Fields;
 use super::lines::Lines;
-use super::poses::{At, Track};
+use super::parameters::{Laser, Parameters, Stated};
+use super::queue::Queue;
 use super::skipped::Damage;
-use super::{LogError, LogOptions, Sensor, SkipReason, Skipped, carmen_line};
+use super::track::Fix;
+use super::{Account, LogError, LogOptions, Passed, Sensor, SensorAccount, carmen_line};
 use covmap_sonar::{Beam, SonarRing};
-use nalgebra::{Isometry2, Translation2, UnitComplex, Vector2};
-use std::collections::VecDeque;
-use std::f64::consts::FRAC_PI_2;
+use nalgebra::{Isometry2, Translation2, UnitComplex};
+use std::collections::BTreeMap;
 use std::path::Path;
 
-/// So many scans may wait for the odometry after them.
-const MOST_WAITING: usize = 256;
-/// A laser without `PARAM robot_front_laser_max` sees so far \[m\].
-const LASER_MAX_RANGE: f64 = 80.0;
-/// A pose of the laser farther than this from the robot's is a corrected one \[m\].
-const FARTHEST_MOUNT: f64 = 1.0;
+/// The lasers, those first that are read where a log has several lines for one scan.
+const LASERS: [Laser; 9] = [
+    Laser { number: 1, tag: "FLASER" },
+    Laser { number: 2, tag: "RLASER" },
+    Laser { number: 1, tag: "ROBOTLASER1" },
+    Laser { number: 2, tag: "ROBOTLASER2" },
+    Laser { number: 1, tag: "RAWLASER1" },
+    Laser { number: 2, tag: "RAWLASER2" },
+    Laser { number: 3, tag: "RAWLASER3" },
+    Laser { number: 4, tag: "RAWLASER4" },
+    Laser { number: 5, tag: "RAWLASER5" },
+];
 
-/// The parameters that matter, as the log states them.
-#[derive(Debug, Default)]
-struct Parameters {
-    laser_max_range: Option<f64>,
-    /// Degrees.
-    laser_resolution: Option<f64>,
-    laser_ahead: Option<f64>,
-    laser_left: Option<f64>,
-    laser_angle: Option<f64>,
-    sonar_min_range: Option<f64>,
-    sonar_max_range: Option<f64>,
+/// What is known of a laser from its first line.
+struct LaserDevice {
+    laser: Laser,
+    device: Device<(usize, Option<Described>)>,
+    /// `robot_from_laser`.
+    mount: Option<Isometry2<f64>>,
 }
 
 /// The frames of a CARMEN log, with the poses that it has for them.
@@ -41,31 +43,50 @@ pub(super) struct CarmenLog {
     configured: SonarRing,
     /// Whether poses come from elsewhere.
     posed: bool,
+    /// Whether `TRUEPOS` has the poses, and not `ODOM` or the lines of lasers.
+    true_poses: bool,
     parameters: Parameters,
     sonar: Device<(f64, Vec<[f64; 3]>)>,
-    laser: Device<LaserIdentity>,
-    /// `robot_from_laser`.
-    mount: Option<Isometry2<f64>>,
-    track: Track,
-    waiting: VecDeque<Measured>,
-    clock: Clock,
+    lasers: BTreeMap<u8, LaserDevice>,
+    queue: Queue,
+    /// How many lines of sensors there are that are not wanted.
+    unwanted: BTreeMap<&'static str, usize>,
     ended: bool,
 }
 
 impl CarmenLog {
-    pub(super) fn new(lines: Lines, options: &LogOptions) -> Self {
+    pub(super) fn new(mut lines: Lines, options: &LogOptions) -> Self {
+        let mut parameters = Parameters::default();
+        let mut lasers = BTreeMap::new();
+        let (mut odometry, mut truths) = (0usize, 0usize);
+        for line in lines.head() {
+            let text = String::from_utf8_lossy(line);
+            let (tag, rest) = split(&text);
+            match tag {
+                "PARAM" => parameters.look_ahead(&mut Fields::new(rest)),
+                "ODOM" => odometry += 1,
+                "TRUEPOS" => truths += 1,
+                _ => {
+                    if let Some(place) = LASERS.iter().position(|laser| laser.tag == tag) {
+                        let best = lasers.entry(LASERS[place].number).or_insert(place);
+                        *best = place.min(*best);
+                    }
+                }
+            }
+        }
+        lines.forget_head();
         Self {
             lines,
             sensor: options.sensor,
             configured: options.ring.clone(),
             posed: options.poses.is_some(),
-            parameters: Parameters::default(),
+            // A few are those that a localisation reported at times.
+            true_poses: truths > 0 && 4 * truths >= odometry,
+            parameters,
             sonar: Device::new(),
-            laser: Device::new(),
-            mount: None,
-            track: Track::default(),
-            waiting: VecDeque::new(),
-            clock: Clock::default(),
+            lasers: lasers.into_values().map(|at| (LASERS[at].number, LASERS[at].into())).collect(),
+            queue: Queue::default(),
+            unwanted: BTreeMap::new(),
             ended: false,
         }
     }
@@ -74,166 +95,199 @@ impl CarmenLog {
         self.lines.path()
     }
 
+    /// The lines of sensors that are not wanted, and how many there are.
+    pub(super) fn unwanted(&self) -> Vec<(&'static str, usize)> {
+        self.unwanted.iter().map(|(tag, count)| (*tag, *count)).collect()
+    }
+
+    /// Where the robot passed after the last frame.
+    pub(super) fn rest(&mut self) -> Vec<Passed> {
+        self.queue.rest()
+    }
+
     /// The next good frame. It has its pose unless all poses come from elsewhere.
-    pub(super) fn next(&mut self, skipped: &mut Skipped) -> Result<Option<Measured>, LogError> {
+    pub(super) fn next(&mut self, account: &mut Account) -> Result<Option<Measured>, LogError> {
         loop {
-            if let Some(frame) = self.take_waiting(skipped) {
+            if let Some(frame) = self.queue.pop(self.ended, self.lines.path(), account) {
                 return Ok(Some(frame));
             }
             if self.ended {
                 return Ok(None);
             }
-            if self.lines.advance()? {
-                self.read(skipped);
-            } else {
+            if !self.lines.advance()? {
                 self.ended = true;
+                account.restarts += self.queue.restarts();
+            } else if let Some(frame) = self.read(account) {
+                return Ok(Some(frame));
             }
         }
     }
 
-    /// The first of the frames that wait for a pose, if its pose is known by now.
-    fn take_waiting(&mut self, skipped: &mut Skipped) -> Option<Measured> {
-        while let Some(mut frame) = self.waiting.pop_front() {
-            if self.posed || frame.pose.is_some() {
-                return Some(frame);
+    /// Takes in the line; gives its frame if that need not wait for a pose.
+    fn read(&mut self, account: &mut Account) -> Option<Measured> {
+        let text = self.lines.text().into_owned();
+        let (tag, rest) = split(&text);
+        // A line of another tag is not split: it may have hundreds of words.
+        let fields = || Fields::new(rest);
+        let laser = LASERS.iter().find(|laser| laser.tag == tag);
+        match (tag, laser, self.sensor) {
+            ("PARAM", ..) => {
+                let damage = self.parameters.read(&mut fields()).err();
+                self.say_pose(account, damage.map(|damage| (self.lines.line(), damage)));
+                None
             }
-            let full = self.waiting.len() >= MOST_WAITING;
-            match self.track.at(frame.time) {
-                At::Pose(pose) => {
-                    frame.pose = Some(pose);
-                    return Some(frame);
-                }
-                At::Later if !self.ended && !full => {
-                    self.waiting.push_front(frame);
+            ("ODOM" | "TRUEPOS", ..) => {
+                self.fix(tag, &mut fields(), account);
+                None
+            }
+            ("SONAR", _, Sensor::Sonar) => {
+                let sonar = carmen_line::sonar(&mut fields());
+                let frame = sonar.and_then(|sonar| self.sonar(sonar, account));
+                self.take(frame.map(|frame| (frame, None)), account)
+            }
+            (_, Some(laser), Sensor::Laser) => {
+                let device = self.lasers.entry(laser.number).or_insert_with(|| (*laser).into());
+                if device.laser != *laser {
+                    account.leave_out(laser.tag);
                     return None;
                 }
-                At::Later | At::Unknown => {
-                    let fault = format!("there is no ODOM around the time {} s", frame.time);
-                    let damage = Damage::new(SkipReason::NoPose, fault);
-                    skipped.add(self.lines.path(), frame.line, damage);
-                }
+                let line = match laser.tag {
+                    "FLASER" | "RLASER" => carmen_line::plain_laser(&mut fields()),
+                    tag => carmen_line::described_laser(&mut fields(), tag.starts_with("RAW")),
+                };
+                let frame = line.and_then(|line| self.laser(laser.number, line, account));
+                self.take(frame, account)
             }
+            ("SONAR", ..) => {
+                *self.unwanted.entry("SONAR").or_default() += 1;
+                None
+            }
+            (_, Some(laser), _) => {
+                *self.unwanted.entry(laser.tag).or_default() += 1;
+                None
+            }
+            _ => None,
+        }
+    }
+
+    /// Takes in a pose of the robot.
+    fn fix(&mut self, tag: &str, fields: &mut Fields<'_>, account: &mut Account) {
+        let tag = if tag == "ODOM" { "ODOM" } else { "TRUEPOS" };
+        if self.posed || self.true_poses != (tag == "TRUEPOS") {
+            account.leave_out(tag);
+            return;
+        }
+        let line = self.lines.line();
+        let wrong = match carmen_line::pose(fields) {
+            Ok((stamp, pose)) => self.queue.push_fix(Fix { stamp, line, pose }),
+            Err(damage) => Some((line, damage)),
+        };
+        self.say_pose(account, wrong);
+    }
+
+    fn say_pose(&self, account: &mut Account, wrong: Option<(usize, Damage)>) {
+        if let Some((line, damage)) = wrong {
+            account.skipped.add_pose(self.lines.path(), line, &damage);
+        }
+    }
+
+    /// Takes in a frame, with its pose by odometry if it has a pose of its own.
+    fn take(
+        &mut self,
+        frame: Result<(Measured, Option<Isometry2<f64>>), Damage>,
+        account: &mut Account,
+    ) -> Option<Measured> {
+        account.skipped.add_frame();
+        match frame {
+            Ok((frame, _)) if self.posed => return Some(frame),
+            Ok((frame, Some(odometry))) => self.queue.push_posed(frame, odometry),
+            Ok((frame, None)) => self.queue.push(frame),
+            Err(damage) => account.skipped.add(self.lines.path(), self.lines.line(), damage),
         }
         None
     }
 
-    /// Takes in the line.
-    fn read(&mut self, skipped: &mut Skipped) {
-        let text = self.lines.text().into_owned();
-        let (tag, rest) = text.trim_start().split_once([' ', '\t']).unwrap_or((text.trim(), ""));
-        // A line of another tag is not split: it may have hundreds of words.
-        let fields = || Fields::new(rest);
-        let frame = match (tag, self.sensor) {
-            ("PARAM", _) => {
-                if let Err(damage) = self.parameters.read(&mut fields()) {
-                    skipped.add_pose(self.lines.path(), self.lines.line(), &damage);
-                }
-                return;
-            }
-            ("ODOM", _) => {
-                let pose = carmen_line::odometry(&mut fields());
-                if let Err(damage) = pose.and_then(|(time, pose)| self.track.push(time, pose)) {
-                    skipped.add_pose(self.lines.path(), self.lines.line(), &damage);
-                }
-                return;
-            }
-            ("SONAR", Sensor::Sonar) => {
-                carmen_line::sonar(&mut fields()).and_then(|sonar| self.sonar(sonar, skipped))
-            }
-            ("FLASER", Sensor::Laser) => {
-                carmen_line::flaser(&mut fields()).and_then(|laser| self.laser(laser, skipped))
-            }
-            ("ROBOTLASER1", Sensor::Laser) => {
-                carmen_line::robot_laser(&mut fields()).and_then(|laser| self.laser(laser, skipped))
-            }
-            _ => return,
-        };
-        skipped.add_frame();
-        match frame.and_then(|frame| self.clock.check(frame.time).map(|()| frame)) {
-            Ok(frame) => self.waiting.push_back(frame),
-            Err(damage) => skipped.add(self.lines.path(), self.lines.line(), damage),
-        }
-    }
-
-    fn sonar(&mut self, sonar: SonarLine, skipped: &mut Skipped) -> Result<Measured, Damage> {
-        let SonarLine { cone_angle, ranges, places, time } = sonar;
-        let (parameters, configured) = (&self.parameters, &self.configured);
-        let ring = self.sonar.ring((cone_angle, places), |(cone_angle, places)| {
-            sonar_beams(*cone_angle, places, parameters, configured)
-        })?;
-        Measured::new(&self.lines, time, ring, &ranges, skipped)
+    fn sonar(&mut self, sonar: SonarLine, account: &mut Account) -> Result<Measured, Damage> {
+        let SonarLine { cone_angle, ranges, places, stamp } = sonar;
+        let limits = [self.parameters.sonar_min_range(), self.parameters.sonar_max_range()];
+        let [min, max] = &limits;
+        let key = |limit: &Option<Stated>| limit.as_ref().map_or(-1.0, |limit| limit.value);
+        let configured = &self.configured;
+        let ring = self.sonar.ring(
+            (cone_angle, places),
+            (key(min), key(max)),
+            (account, "SONAR"),
+            |(cone_angle, places), told| {
+                let beams = sonar_beams(*cone_angle, places, configured, &limits);
+                tell_sonars(&beams, &limits, told);
+                Ok(beams)
+            },
+        )?;
+        self.say_poses(None, account);
+        Measured::new(&self.lines, stamp, ring, &ranges, account)
     }
 
     /// The pose is the one that puts the laser where the line says it was: in a corrected log
     /// the poses of the laser are corrected, and those of the robot are not.
-    fn laser(&mut self, laser: LaserLine, skipped: &mut Skipped) -> Result<Measured, Damage> {
-        let LaserLine { identity, ranges, laser, robot, time } = laser;
-        let angles = self.parameters.angles(&identity)?;
-        let mount = self.mount.unwrap_or_else(|| self.parameters.mount(&laser, &robot));
-        let max_range = identity.described.map(|(.., max_range)| max_range);
-        let max_range = max_range.or(self.parameters.laser_max_range).unwrap_or(LASER_MAX_RANGE);
-        let ring = self.laser.ring(identity, |identity| {
-            laser_beams(&mount, identity.count, angles, (0.0, max_range))
-        })?;
-        self.mount = Some(mount);
-        let measured = Measured::new(&self.lines, time, ring, &ranges, skipped)?;
-        Ok(Measured { pose: Some(laser * mount.inverse()), ..measured })
+    fn laser(
+        &mut self,
+        number: u8,
+        line: LaserLine,
+        account: &mut Account,
+    ) -> Result<(Measured, Option<Isometry2<f64>>), Damage> {
+        let LaserLine { described, ranges, poses, stamp } = line;
+        let Some(LaserDevice { laser, device, mount }) = self.lasers.get_mut(&number) else {
+            unreachable!("the laser was entered")
+        };
+        let parameters = &self.parameters;
+        let (seen, mounting) = parameters.mount(*laser, poses.as_ref());
+        let mount = *mount.get_or_insert(seen);
+        let max = parameters.laser_max_range(*laser, described.as_ref());
+        let ring = device.ring(
+            (ranges.len(), described),
+            (0.0, max.value),
+            (account, laser.tag),
+            |(count, described), told| {
+                let (start, step) = parameters.angles(*laser, described.as_ref(), *count)?;
+                tell_laser((start, &step), *count, (&mount, mounting), &max, told);
+                Ok(laser_beams(&mount, *count, (start, step.value), (0.0, max.value)))
+            },
+        )?;
+        let tag = laser.tag;
+        let own = poses.filter(|_| !self.true_poses && !self.posed);
+        self.say_poses(own.map(|_| tag), account);
+        let measured = Measured::new(&self.lines, stamp, ring, &ranges, account)?;
+        let pose = own.map(|[laser, _]| laser * mount.inverse());
+        Ok((Measured { pose, ..measured }, own.map(|[_, robot]| robot)))
+    }
+
+    fn say_poses(&self, own: Option<&str>, account: &mut Account) {
+        if account.poses.is_empty() {
+            let tag = own.unwrap_or(if self.true_poses { "TRUEPOS" } else { "ODOM" });
+            account.poses = format!("lines {tag}");
+        }
     }
 }
 
-impl Parameters {
-    /// `PARAM name value ipc_timestamp host logger_timestamp`
-    fn read(&mut self, fields: &mut Fields<'_>) -> Result<(), Damage> {
-        let name = fields.word("name")?;
-        let value = match name {
-            "robot_front_laser_max" => &mut self.laser_max_range,
-            "laser_front_laser_resolution" => &mut self.laser_resolution,
-            "robot_frontlaser_offset" => &mut self.laser_ahead,
-            "robot_frontlaser_side_offset" => &mut self.laser_left,
-            "robot_frontlaser_angular_offset" => &mut self.laser_angle,
-            super::carmen_writer::MIN_RANGE => &mut self.sonar_min_range,
-            super::carmen_writer::MAX_RANGE => &mut self.sonar_max_range,
-            _ => return Ok(()),
-        };
-        *value = Some(fields.number(name)?);
-        Ok(())
+impl From<Laser> for LaserDevice {
+    fn from(laser: Laser) -> Self {
+        Self { laser, device: Device::new(), mount: None }
     }
+}
 
-    /// The angle of the first beam, and the step \[rad\].
-    fn angles(&self, laser: &LaserIdentity) -> Result<(f64, f64), Damage> {
-        let degrees = match (laser.described, laser.count, self.laser_resolution) {
-            (Some((start, step, _)), ..) => return Ok((start, step)),
-            (None, 180 | 181, _) => 1.0,
-            (None, 360 | 361, _) => 0.5,
-            (None, _, Some(degrees)) => degrees,
-            (None, count, None) => {
-                let fault = format!("number of ranges: nothing says at which angles {count} are");
-                return Err(Damage::new(SkipReason::Count, fault));
-            }
-        };
-        Ok((-FRAC_PI_2, f64::to_radians(degrees)))
-    }
-
-    /// `robot_from_laser`: as the parameters say it, or else as the poses of one frame do.
-    fn mount(&self, laser: &Isometry2<f64>, robot: &Isometry2<f64>) -> Isometry2<f64> {
-        let stated = [self.laser_ahead, self.laser_left, self.laser_angle];
-        if stated.iter().any(Option::is_some) {
-            let [ahead, left, angle] = stated.map(|value| value.unwrap_or(0.0));
-            return Isometry2::new(Vector2::new(ahead, left), angle);
-        }
-        let seen = robot.inverse() * laser;
-        let near = seen.translation.vector.norm() <= FARTHEST_MOUNT;
-        if near { seen } else { Isometry2::identity() }
-    }
+/// The tag of a line, and what follows it.
+fn split(line: &str) -> (&str, &str) {
+    let line = line.trim();
+    line.split_once([' ', '\t']).unwrap_or((line, ""))
 }
 
 /// The beams of a ring as a line describes it. What it does not say, the shortest and the
-/// longest range, is in parameters of our own, or else as configured.
+/// longest range, is in parameters, or else as configured.
 fn sonar_beams(
     cone_angle: f64,
     places: &[[f64; 3]],
-    parameters: &Parameters,
     configured: &SonarRing,
+    [min, max]: &[Option<Stated>; 2],
 ) -> Vec<Beam> {
     let known = configured.beams();
     let same = known.len() == places.len();
@@ -242,9 +296,46 @@ fn sonar_beams(
         Beam {
             pose: Isometry2::from_parts(Translation2::new(x, y), UnitComplex::new(theta)),
             half_angle: 0.5 * cone_angle,
-            min_range: parameters.sonar_min_range.unwrap_or(like.min_range),
-            max_range: parameters.sonar_max_range.unwrap_or(like.max_range),
+            min_range: min.as_ref().map_or(like.min_range, |min| min.value),
+            max_range: max.as_ref().map_or(like.max_range, |max| max.value),
         }
     };
     places.iter().enumerate().map(beam).collect()
+}
+
+fn tell_sonars(beams: &[Beam], limits: &[Option<Stated>; 2], told: &mut SensorAccount) {
+    let Some(first) = beams.first() else { return };
+    let cone = (2.0 * first.half_angle).to_degrees();
+    told.take(format!("{} sonars with cones of {cone:.1}°", beams.len()), "lines SONAR");
+    let ranges = [("shortest", first.min_range), ("longest", first.max_range)];
+    for ((name, range), stated) in ranges.into_iter().zip(limits) {
+        let source = stated.as_ref().map_or("the configuration", |stated| stated.source.as_str());
+        told.take(format!("{name} range {} m", short(range)), source);
+    }
+}
+
+fn tell_laser(
+    (start, step): (f64, &Stated),
+    count: usize,
+    (mount, mounting): (&Isometry2<f64>, String),
+    max: &Stated,
+    told: &mut SensorAccount,
+) {
+    let [start, degrees] = [start, step.value].map(f64::to_degrees);
+    told.take(
+        format!("{count} beams from {}° in steps of {}°", short(start), short(degrees)),
+        step.source.clone(),
+    );
+    told.take(format!("longest range {} m", short(max.value)), max.source.clone());
+    let place = mount.translation.vector;
+    let angle = mount.rotation.angle().to_degrees();
+    told.take(
+        format!("mounted at ({}, {}) m, {}°", short(place.x), short(place.y), short(angle)),
+        mounting,
+    );
+}
+
+/// A number with as many digits as are read, and no −0.
+pub(super) fn short(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4 + 0.0
 }

@@ -1,42 +1,63 @@
 //! What the lines of a CARMEN log say, and what they leave open.
 
 use super::SkipReason;
-use super::fields::Fields;
+use super::fields::{Fields, Written};
 use super::skipped::Damage;
+use super::track::Stamp;
 use nalgebra::Isometry2;
+
+/// The tags of the lines that are read.
+pub(super) const TAGS: [&str; 13] = [
+    "PARAM",
+    "ODOM",
+    "TRUEPOS",
+    "SONAR",
+    "FLASER",
+    "RLASER",
+    "ROBOTLASER1",
+    "ROBOTLASER2",
+    "RAWLASER1",
+    "RAWLASER2",
+    "RAWLASER3",
+    "RAWLASER4",
+    "RAWLASER5",
+];
 
 /// A line `SONAR`: the readings, and where the sensors are in the frame of the robot.
 pub(super) struct SonarLine {
     /// The whole opening angle of each cone \[rad\].
     pub(super) cone_angle: f64,
-    pub(super) ranges: Vec<f64>,
+    pub(super) ranges: Vec<Written>,
     /// x, y \[m\] and theta \[rad\] of each sensor.
     pub(super) places: Vec<[f64; 3]>,
-    pub(super) time: f64,
+    pub(super) stamp: Stamp,
 }
 
-/// What a laser says of itself.
+/// What a line says of its laser, but `FLASER` and `RLASER`.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct LaserIdentity {
-    pub(super) count: usize,
-    /// Tag `ROBOTLASER1`, with the angle of its first beam and the step \[rad\], and its
-    /// longest range \[m\]; or tag `FLASER`, which says nothing of them.
-    pub(super) described: Option<(f64, f64, f64)>,
+pub(super) struct Described {
+    /// The angle of the first beam \[rad\].
+    pub(super) start: f64,
+    /// From the first beam to the last \[rad\].
+    pub(super) field_of_view: f64,
+    /// Between two beams \[rad\].
+    pub(super) resolution: f64,
+    /// Metres.
+    pub(super) max_range: f64,
 }
 
-/// A line `FLASER` or `ROBOTLASER1`.
+/// A line of a laser.
 pub(super) struct LaserLine {
-    pub(super) identity: LaserIdentity,
-    pub(super) ranges: Vec<f64>,
-    /// `world_from_laser`.
-    pub(super) laser: Isometry2<f64>,
-    /// `world_from_robot`, by odometry.
-    pub(super) robot: Isometry2<f64>,
-    pub(super) time: f64,
+    pub(super) described: Option<Described>,
+    pub(super) ranges: Vec<Written>,
+    /// `world_from_laser`, and `world_from_robot` by odometry; `RAWLASER` has none.
+    pub(super) poses: Option<[Isometry2<f64>; 2]>,
+    pub(super) stamp: Stamp,
 }
 
-/// `ODOM x y theta tv rv accel ipc_timestamp host logger_timestamp`
-pub(super) fn odometry(fields: &mut Fields<'_>) -> Result<(f64, Isometry2<f64>), Damage> {
+/// `ODOM x y theta tv rv accel ipc_timestamp host logger_timestamp`, or
+/// `TRUEPOS x y theta odom_x odom_y odom_theta ipc_timestamp host logger_timestamp`
+pub(super) fn pose(fields: &mut Fields<'_>) -> Result<(Stamp, Isometry2<f64>), Damage> {
     let pose = fields.pose(["x", "y", "theta"], 1.0, 1.0)?;
     fields.skip(3);
     Ok((end(fields)?, pose))
@@ -53,28 +74,28 @@ pub(super) fn sonar(fields: &mut Fields<'_>) -> Result<SonarLine, Damage> {
         Ok([number("x")?, number("y")?, number("theta")?])
     };
     let places = (0..count).map(|i| place(i, fields)).collect::<Result<_, Damage>>()?;
-    Ok(SonarLine { cone_angle, ranges, places, time: end(fields)? })
+    Ok(SonarLine { cone_angle, ranges, places, stamp: end(fields)? })
 }
 
 /// `FLASER n r_1 … r_n x y theta odom_x odom_y odom_theta ipc_timestamp host logger_timestamp`
-pub(super) fn flaser(fields: &mut Fields<'_>) -> Result<LaserLine, Damage> {
+pub(super) fn plain_laser(fields: &mut Fields<'_>) -> Result<LaserLine, Damage> {
     let count = fields.count("number of ranges")?;
     expect_words(fields, count, count.saturating_add(6))?;
     let ranges = fields.ranges(count, 1.0)?;
     let laser = fields.pose(["x", "y", "theta"], 1.0, 1.0)?;
     let robot = fields.pose(["odom_x", "odom_y", "odom_theta"], 1.0, 1.0)?;
-    let identity = LaserIdentity { count, described: None };
-    Ok(LaserLine { identity, ranges, laser, robot, time: end(fields)? })
+    Ok(LaserLine { described: None, ranges, poses: Some([laser, robot]), stamp: end(fields)? })
 }
 
 /// `ROBOTLASER1 type start fov resolution max accuracy remission_mode n r… m rem… laser_x
 /// laser_y laser_theta robot_x robot_y robot_theta tv rv forward_safety side_safety turn_axis
-/// ipc_timestamp host logger_timestamp`
-pub(super) fn robot_laser(fields: &mut Fields<'_>) -> Result<LaserLine, Damage> {
+/// ipc_timestamp host logger_timestamp`; of `RAWLASER1`, nothing between the remissions and the
+/// time.
+pub(super) fn described_laser(fields: &mut Fields<'_>, raw: bool) -> Result<LaserLine, Damage> {
     fields.skip(1);
     let start = fields.number("start angle")?;
-    fields.skip(1);
-    let step = fields.number("angular resolution")?;
+    let field_of_view = fields.number("field of view")?;
+    let resolution = fields.number("angular resolution")?;
     let max_range = fields.number("maximum range")?;
     fields.skip(2);
     let count = fields.count("number of ranges")?;
@@ -83,21 +104,24 @@ pub(super) fn robot_laser(fields: &mut Fields<'_>) -> Result<LaserLine, Damage> 
     }
     let ranges = fields.ranges(count, 1.0)?;
     let remissions = fields.count("number of remissions")?;
-    expect_words(fields, count, remissions.saturating_add(11))?;
+    expect_words(fields, count, remissions.saturating_add(if raw { 0 } else { 11 }))?;
     fields.skip(remissions);
+    let described = Some(Described { start, field_of_view, resolution, max_range });
+    if raw {
+        return Ok(LaserLine { described, ranges, poses: None, stamp: end(fields)? });
+    }
     let laser = fields.pose(["laser_x", "laser_y", "laser_theta"], 1.0, 1.0)?;
     let robot = fields.pose(["robot_x", "robot_y", "robot_theta"], 1.0, 1.0)?;
     fields.skip(5);
-    let identity = LaserIdentity { count, described: Some((start, step, max_range)) };
-    Ok(LaserLine { identity, ranges, laser, robot, time: end(fields)? })
+    Ok(LaserLine { described, ranges, poses: Some([laser, robot]), stamp: end(fields)? })
 }
 
 /// The time at which the sensor measured, and a host after it: without that, the number may
-/// have been cut.
-fn end(fields: &mut Fields<'_>) -> Result<f64, Damage> {
+/// have been cut. The logger's time may be left out.
+fn end(fields: &mut Fields<'_>) -> Result<Stamp, Damage> {
     let time = fields.time("ipc_timestamp", 1.0)?;
     fields.word("host")?;
-    Ok(time)
+    Ok(Stamp { time, logger: fields.number_if_any() })
 }
 
 /// Checks that so many words come before the time, the host and the logger's time, which may

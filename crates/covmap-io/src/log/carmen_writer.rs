@@ -1,6 +1,7 @@
 //! Writing a CARMEN log.
 
 use covmap_sonar::{Range, Scan, SonarRing};
+use nalgebra::Isometry2;
 use std::io::{self, Write};
 
 /// The parameters in which our logs say what the format has no place for \[m\].
@@ -83,6 +84,21 @@ impl<'a, W: Write> CarmenWriter<'a, W> {
         Ok(Self { ring, out, scans: 0, last: f64::NEG_INFINITY })
     }
 
+    /// Writes where the robot was at a time between two scans, so that its way is known.
+    ///
+    /// # Errors
+    /// If it is no pose or time after those before it, or cannot be written.
+    pub fn pass(&mut self, time: f64, pose: &Isometry2<f64>) -> Result<(), CarmenWriterError> {
+        let (x, y, theta) = (pose.translation.x, pose.translation.y, pose.rotation.angle());
+        let finite = [x, y, theta, time].iter().all(|value| value.is_finite());
+        if !finite || time < self.last {
+            return Err(CarmenWriterError::PoseOrTime(self.scans));
+        }
+        writeln!(self.out, "ODOM {x:?} {y:?} {theta:?} 0.0 0.0 0.0 {time:?} covmap {time:?}")?;
+        self.last = time;
+        Ok(())
+    }
+
     /// Writes a scan.
     ///
     /// # Errors
@@ -95,11 +111,6 @@ impl<'a, W: Write> CarmenWriter<'a, W> {
             let (ranges, sensors) = (ranges.len(), beams.len());
             return Err(CarmenWriterError::Count { scan: number, ranges, sensors });
         }
-        let (x, y, theta) = (pose.translation.x, pose.translation.y, pose.rotation.angle());
-        let finite = [x, y, theta, *time].iter().all(|value| value.is_finite());
-        if !finite || *time < self.last {
-            return Err(CarmenWriterError::PoseOrTime(number));
-        }
         let (min, max) = (beams[0].min_range, beams[0].max_range);
         let value = |range: &Range| match *range {
             Range::Echo(d) if d > 0.0 && d >= min && d < max => Ok(d),
@@ -108,16 +119,22 @@ impl<'a, W: Write> CarmenWriter<'a, W> {
             Range::Missing => Ok(0.0),
         };
         let values = ranges.iter().map(value).collect::<Result<Vec<f64>, _>>()?;
-        let out = &mut self.out;
-        writeln!(out, "ODOM {x:?} {y:?} {theta:?} 0.0 0.0 0.0 {time:?} covmap {time:?}")?;
+        self.pass(*time, pose)?;
+        let (out, places) = (&mut self.out, decimals(max));
         write!(out, "SONAR {:?} {}", 2.0 * beams[0].half_angle, beams.len())?;
-        values.iter().try_for_each(|value| write!(out, " {value:?}"))?;
+        for value in values {
+            // With fewer decimals than the longest range has, an echo could be that range, cut.
+            match decimals(value) < places {
+                true => write!(out, " {value:.places$}")?,
+                false => write!(out, " {value:?}")?,
+            }
+        }
         for beam in beams {
             let (place, angle) = (beam.pose.translation.vector, beam.pose.rotation.angle());
             write!(out, " {:?} {:?} {angle:?}", place.x, place.y)?;
         }
         writeln!(out, " {time:?} covmap {time:?}")?;
-        (self.scans, self.last) = (number + 1, *time);
+        self.scans = number + 1;
         Ok(())
     }
 
@@ -129,4 +146,9 @@ impl<'a, W: Write> CarmenWriter<'a, W> {
         self.out.flush()?;
         Ok(self.scans)
     }
+}
+
+/// With how many decimals a number is written.
+fn decimals(value: f64) -> usize {
+    format!("{value:?}").split_once('.').map_or(0, |(_, decimals)| decimals.len())
 }

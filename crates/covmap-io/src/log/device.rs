@@ -1,86 +1,109 @@
 //! The sensor that a log comes from: the one of its first frame.
 
+use super::fields::Written;
 use super::lines::Lines;
 use super::skipped::Damage;
-use super::{SkipReason, Skipped};
+use super::track::Stamp;
+use super::{Account, Passed, SkipReason};
 use covmap_sonar::{Beam, Range, SonarRing};
 use nalgebra::{Isometry2, Vector2};
 use std::path::Path;
 use std::sync::Arc;
 
+/// So often the shortest and longest ranges of a sensor may change in a log.
+const MOST_LIMITS: usize = 8;
+
 /// A frame before its pose is known.
 pub(super) struct Measured {
     pub(super) line: usize,
-    /// When \[s\].
-    pub(super) time: f64,
+    pub(super) stamp: Stamp,
+    /// Its number in the account.
+    pub(super) sensor: usize,
     pub(super) ring: Arc<SonarRing>,
     pub(super) ranges: Vec<Range>,
-    /// Where the robot was, if the frame says so.
+    /// The sensors whose reading is no number that it could be.
+    pub(super) unusable: Vec<usize>,
+    /// Whether its time is that of the frame before it.
+    pub(super) tied: bool,
+    /// Where the robot was, if that is known.
     pub(super) pose: Option<Isometry2<f64>>,
+    /// The way of the odometry to it, from the frame before.
+    pub(super) way: Vec<Passed>,
 }
 
 impl Measured {
-    /// The frame in the present line of a log, without a pose, from its readings \[m\].
+    /// The frame in the present line of a log, without a pose.
     pub(super) fn new(
         lines: &Lines,
-        time: f64,
-        ring: Arc<SonarRing>,
-        values: &[f64],
-        skipped: &mut Skipped,
+        stamp: Stamp,
+        (sensor, ring): (usize, Arc<SonarRing>),
+        values: &[Written],
+        account: &mut Account,
     ) -> Result<Self, Damage> {
         let line = lines.line();
-        let ranges = readings(values, &ring, skipped, (lines.path(), line))?;
-        Ok(Self { line, time, ring, ranges, pose: None })
+        let unusable = |(i, range): (usize, &Written)| {
+            (range.value.is_nan() || range.value < 0.0).then_some(i)
+        };
+        let unusable: Vec<usize> = values.iter().enumerate().filter_map(unusable).collect();
+        let ranges = readings(values, &ring)?;
+        account.skipped.add_readings(lines.path(), line, unusable.len());
+        let (tied, pose, way) = (false, None, Vec::new());
+        Ok(Self { line, stamp, sensor, ring, ranges, unusable, tied, pose, way })
+    }
+
+    /// Counts it as skipped.
+    pub(super) fn skip(&self, path: &Path, damage: Damage, account: &mut Account) {
+        account.sensors[self.sensor].count_skipped(self.ranges.len());
+        account.skipped.add(path, self.line, damage);
     }
 }
 
-/// The ring that all frames of a log share. `I` is what a line says of its sensor.
+/// The ring that all frames of a sensor share. `I` is what a line says of it.
 pub(super) struct Device<I> {
-    first: Option<(I, Arc<SonarRing>)>,
+    first: Option<(I, usize)>,
+    /// One for the shortest and longest ranges that were in force \[m\].
+    rings: Vec<((f64, f64), Arc<SonarRing>)>,
 }
 
 impl<I: PartialEq> Device<I> {
     pub(super) fn new() -> Self {
-        Self { first: None }
+        Self { first: None, rings: Vec::new() }
     }
 
-    /// The ring, made by the first frame; the others must come from the same sensor.
+    /// Its number in the account, and its ring, which is made for the first frame; the others
+    /// must come from the same sensor. The account tells from where `beams` has them.
+    #[allow(clippy::float_cmp, reason = "the same numbers of the same lines")]
     pub(super) fn ring(
         &mut self,
         identity: I,
-        beams: impl FnOnce(&I) -> Vec<Beam>,
-    ) -> Result<Arc<SonarRing>, Damage> {
-        match &self.first {
-            Some((first, ring)) if *first == identity => Ok(Arc::clone(ring)),
-            Some(_) => Err(Damage::new(
-                SkipReason::Geometry,
-                "places, angles or number of sensors differ from those of the first frame",
-            )),
-            None => {
-                let ring = SonarRing::new(beams(&identity)).map_err(|error| {
-                    Damage::new(SkipReason::Unreadable, format!("geometry: {error}"))
-                })?;
-                let ring = Arc::new(ring);
-                self.first = Some((identity, Arc::clone(&ring)));
-                Ok(ring)
-            }
+        limits: (f64, f64),
+        (account, lines): (&mut Account, &'static str),
+        beams: impl FnOnce(&I, &mut super::SensorAccount) -> Result<Vec<Beam>, Damage>,
+    ) -> Result<(usize, Arc<SonarRing>), Damage> {
+        let differs =
+            |what: &str| Damage::new(SkipReason::Geometry, format!("{what} of the first frame"));
+        if self.first.as_ref().is_some_and(|(first, _)| *first != identity) {
+            return Err(differs("places, angles or number of sensors differ from those"));
         }
-    }
-}
-
-/// What frames are passed on in: never back in time.
-#[derive(Default)]
-pub(super) struct Clock {
-    last: Option<f64>,
-}
-
-impl Clock {
-    pub(super) fn check(&mut self, time: f64) -> Result<(), Damage> {
-        if let Some(last) = self.last.filter(|last| time < *last) {
-            return Err(super::poses::backwards(time, last));
+        if let Some((_, ring)) = self.rings.iter().find(|(known, _)| *known == limits) {
+            let sensor = self.first.as_ref().map_or(0, |(_, sensor)| *sensor);
+            return Ok((sensor, Arc::clone(ring)));
         }
-        self.last = Some(time);
-        Ok(())
+        if self.rings.len() == MOST_LIMITS {
+            return Err(differs("shortest and longest ranges changed too often, away from those"));
+        }
+        let mut told = super::SensorAccount::new(lines);
+        let ring = SonarRing::new(beams(&identity, &mut told)?)
+            .map_err(|error| Damage::new(SkipReason::Unreadable, format!("geometry: {error}")))?;
+        let sensor = match &self.first {
+            Some((_, sensor)) => *sensor,
+            None => account.add_sensor(lines),
+        };
+        told.taken.into_iter().for_each(|t| account.sensors[sensor].take(t.what, t.source));
+        let ring = Arc::new(ring);
+        self.rings.push((limits, Arc::clone(&ring)));
+        self.first.get_or_insert((identity, sensor));
+        Ok((sensor, ring))
     }
 }
 
@@ -102,27 +125,71 @@ pub(super) fn laser_beams(
     (0..u32::try_from(count).unwrap_or(u32::MAX).min(1 << 16)).map(beam).collect()
 }
 
-/// What numbers \[m\] mean as readings of a ring.
+/// What numbers mean as readings of a ring.
 ///
-/// From the longest range on there is no echo; below the shortest, and at zero, the reading is
-/// missing; so it is if it is NaN or negative, and that is counted.
-fn readings(
-    values: &[f64],
-    ring: &SonarRing,
-    skipped: &mut Skipped,
-    (path, line): (&Path, usize),
-) -> Result<Vec<Range>, Damage> {
+/// From the longest range on there is no echo; below the shortest, at zero, and if it is NaN or
+/// negative, the reading is missing. The longest range may be rounded to, or cut at, the decimal
+/// places with which the readings are written.
+fn readings(values: &[Written], ring: &SonarRing) -> Result<Vec<Range>, Damage> {
     if values.len() != ring.beams().len() {
         let fault =
             format!("ranges: there are {}, but the ring has {}", values.len(), ring.beams().len());
         return Err(Damage::new(SkipReason::Count, fault));
     }
-    let bad = values.iter().filter(|value| value.is_nan() || **value < 0.0).count();
-    skipped.add_readings(path, line, bad);
-    let reading = |(value, beam): (&f64, &Beam)| match *value {
-        v if v >= beam.max_range => Range::NoEcho,
+    let reading = |(range, beam): (&Written, &Beam)| match range.value {
+        _ if is_longest(range, beam.max_range) => Range::NoEcho,
         v if v > 0.0 && v >= beam.min_range => Range::Echo(v),
         _ => Range::Missing,
     };
     Ok(values.iter().zip(ring.beams()).map(reading).collect())
+}
+
+/// The coarsest decimal place that a range is taken to be written with \[m\].
+const COARSEST_PLACE: f64 = 0.1;
+
+/// Whether a range as it is written may be the longest, or is longer.
+fn is_longest(range: &Written, max_range: f64) -> bool {
+    let place = range.place.min(COARSEST_PLACE);
+    range.value >= max_range || range.value - max_range + place > 1e-9
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::fields::Fields;
+    use super::*;
+
+    /// What a number that is written means where the longest range is `max_range` \[m\].
+    #[track_caller]
+    fn check(word: &str, max_range: f64, expected: Range) {
+        let beam = Beam { pose: Isometry2::identity(), half_angle: 0.1, min_range: 0.2, max_range };
+        let ring = SonarRing::new(vec![beam]).unwrap();
+        let written = Fields::new(word).ranges(1, 1.0).unwrap();
+        assert_eq!(readings(&written, &ring).unwrap(), [expected], "{word} of {max_range}");
+    }
+
+    #[test]
+    fn the_longest_range_is_no_echo_with_as_few_decimals_as_it_is_written() {
+        for written in ["2", "2.0", "2.00", "2.000", "2.0000001", "9.9", "inf"] {
+            check(written, 2.0, Range::NoEcho);
+        }
+        // Rounded, or cut.
+        check("5.3", 5.3333, Range::NoEcho);
+        check("5.33", 5.3333, Range::NoEcho);
+        check("5.333", 5.3333, Range::NoEcho);
+        check("5.66", 5.6666, Range::NoEcho);
+        check("5.67", 5.6666, Range::NoEcho);
+        check("5", 5.04, Range::NoEcho);
+    }
+
+    #[test]
+    fn one_less_in_the_last_decimal_is_an_echo() {
+        check("1.9", 2.0, Range::Echo(1.9));
+        check("1.99", 2.0, Range::Echo(1.99));
+        check("1.999", 2.0, Range::Echo(1.999));
+        check("1.9999999999999998", 2.0, Range::Echo(1.999_999_999_999_999_8));
+        check("5.31", 5.3333, Range::Echo(5.31));
+        check("1.99e0", 2.0, Range::Echo(1.99));
+        check("0.1", 2.0, Range::Missing);
+        check("nan", 2.0, Range::Missing);
+    }
 }

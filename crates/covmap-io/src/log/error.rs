@@ -1,7 +1,8 @@
 //! What can be wrong with a log as a whole.
 
-use super::Skipped;
 use super::lines::{LONGEST_LINE, MOST_RATIO};
+use super::poses::MOST_POSES;
+use super::{Sensor, Skipped};
 use std::io;
 use std::path::PathBuf;
 
@@ -25,6 +26,22 @@ pub enum LogError {
         /// What it is.
         path: PathBuf,
     },
+    /// A file of another kind.
+    #[error("{}: is {kind}; a log is a CARMEN text log, or a folder with od.txt, and sonar.txt or laser.txt", path.display())]
+    Foreign {
+        /// The file or folder.
+        path: PathBuf,
+        /// What it is, and what reads it.
+        kind: &'static str,
+    },
+    /// More poses than are held.
+    #[error("{}:{line}: has more than {MOST_POSES} poses; cut it, or thin it out", path.display())]
+    TooManyPoses {
+        /// The file.
+        path: PathBuf,
+        /// The line with the first pose that is too much, counted from 1.
+        line: usize,
+    },
     /// A folder without one of its files.
     #[error("{}: is a folder without {name}; a log is a CARMEN log, or a folder with od.txt, and sonar.txt or laser.txt", path.display())]
     MissingFile {
@@ -32,6 +49,16 @@ pub enum LogError {
         path: PathBuf,
         /// The file.
         name: &'static str,
+    },
+    /// A folder with the readings of another sensor alone.
+    #[error("{}: is a folder without {name}, but with {has}", path.display())]
+    OtherSensor {
+        /// The folder.
+        path: PathBuf,
+        /// The file that is not there.
+        name: &'static str,
+        /// The file that is.
+        has: &'static str,
     },
     /// A line longer than any of a log.
     #[error("{}:{line}: the line has more than {LONGEST_LINE} bytes; this is no log", path.display())]
@@ -60,20 +87,43 @@ pub enum LogError {
         line: usize,
     },
     /// Not one frame of the log can be used.
-    #[error("{}: has no scan that can be used: {}", path.display(), in_words(skipped, wanted))]
+    #[error("{}: has no scan that can be used: {}", path.display(), in_words(skipped, wanted, others))]
     NoScans {
         /// The file.
         path: PathBuf,
         /// What was looked for.
         wanted: &'static str,
+        /// How many lines of the other sensors there are.
+        others: Vec<(&'static str, usize)>,
         /// What was found instead.
         skipped: Box<Skipped>,
     },
 }
 
-fn in_words(skipped: &Skipped, wanted: &str) -> String {
-    match skipped.frames() {
-        0 => format!("there is no {wanted}"),
-        _ => skipped.to_string(),
+impl LogError {
+    /// The sensor that the log has, if it has nothing of the wanted one.
+    pub fn other_sensor(&self) -> Option<Sensor> {
+        let is_sonar = match self {
+            Self::OtherSensor { has, .. } => *has == "sonar.txt",
+            Self::NoScans { skipped, others, .. } if skipped.frames() == 0 => {
+                others.first()?.0 == "SONAR"
+            }
+            _ => return None,
+        };
+        Some(if is_sonar { Sensor::Sonar } else { Sensor::Laser })
+    }
+}
+
+fn in_words(skipped: &Skipped, wanted: &str, others: &[(&str, usize)]) -> String {
+    if skipped.frames() > 0 {
+        return skipped.to_string();
+    }
+    let many = |(tag, count): &(&str, usize)| match count {
+        1 => format!("1 line {tag}"),
+        _ => format!("{count} lines {tag}"),
+    };
+    match others.iter().map(many).collect::<Vec<_>>().join(" and ") {
+        none if none.is_empty() => format!("there is no {wanted}"),
+        some => format!("there is no {wanted}, but {some}"),
     }
 }

@@ -10,6 +10,15 @@ const FARTHEST: f64 = 1e7;
 /// No clock shows more than this \[s\].
 const LATEST: f64 = 1e13;
 
+/// A range as it is written.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Written {
+    /// Metres.
+    pub(super) value: f64,
+    /// What one more in its last decimal place is worth \[m\]; 0 if that cannot be told.
+    pub(super) place: f64,
+}
+
 /// The words of a line, taken one after the other.
 pub(super) struct Fields<'a> {
     words: Vec<&'a str>,
@@ -61,6 +70,11 @@ impl<'a> Fields<'a> {
         self.number_up_to(field, FARTHEST)
     }
 
+    /// A number, if the next word is one.
+    pub(super) fn number_if_any(&mut self) -> Option<f64> {
+        self.number_up_to("", LATEST).ok()
+    }
+
     /// A time, in units of which a second has `per_second`.
     pub(super) fn time(&mut self, field: &str, per_second: f64) -> Result<f64, Damage> {
         Ok(self.number_up_to(field, LATEST)? / per_second)
@@ -84,16 +98,28 @@ impl<'a> Fields<'a> {
     }
 
     /// So many ranges, in units of which a metre has `per_metre`; NaN and infinity, too.
-    pub(super) fn ranges(&mut self, count: usize, per_metre: f64) -> Result<Vec<f64>, Damage> {
-        (0..count.min(self.left()))
-            .map(|i| Ok(self.any_number(format_args!("range {i}"))? / per_metre))
-            .collect()
+    pub(super) fn ranges(&mut self, count: usize, per_metre: f64) -> Result<Vec<Written>, Damage> {
+        let range = |i, fields: &mut Self| {
+            let word = fields.words.get(fields.next).copied().unwrap_or_default();
+            let value = fields.any_number(format_args!("range {i}"))? / per_metre;
+            Ok(Written { value, place: last_place(word) / per_metre })
+        };
+        (0..count.min(self.left())).map(|i| range(i, self)).collect()
     }
 
     /// Passes over some words.
     pub(super) fn skip(&mut self, count: usize) {
         self.next = self.next.saturating_add(count).min(self.words.len());
     }
+}
+
+/// What one more in the last decimal place of a number is worth: 0.01 for `10.70`.
+fn last_place(word: &str) -> f64 {
+    if word.contains(['e', 'E', 'n', 'N']) {
+        return 0.0;
+    }
+    let decimals = word.split_once('.').map_or(0, |(_, decimals)| decimals.len());
+    (0..decimals.min(17)).fold(1.0, |place, _| place / 10.0)
 }
 
 fn unreadable(field: impl Display, fault: &str) -> Damage {

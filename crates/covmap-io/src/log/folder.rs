@@ -1,16 +1,17 @@
 //! A folder of three files, in which line i of each is the same frame.
 
-use super::device::{Clock, Device, Measured, laser_beams};
+use super::carmen::short;
+use super::device::{Device, Measured, laser_beams};
 use super::fields::Fields;
 use super::lines::Lines;
 use super::poses::{PoseFile, Units};
 use super::skipped::Damage;
-use super::{LogError, LogOptions, Sensor, SkipReason, Skipped};
+use super::track::{Stamp, Ties};
+use super::{Account, LogError, LogOptions, Sensor, SkipReason, foreign};
 use covmap_sonar::SonarRing;
 use nalgebra::Isometry2;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 /// Millimetres in a metre.
 const PER_METRE: f64 = 1e3;
@@ -22,56 +23,80 @@ const LASER_RANGES: (f64, f64) = (0.3, 81.0);
 /// The frames of `sonar.txt` or of `laser.txt`.
 pub(super) struct FolderLog {
     lines: Lines,
-    sonar: Option<Arc<SonarRing>>,
-    laser: Device<usize>,
-    clock: Clock,
+    /// The sonars as they are configured, if those are wanted.
+    sonar: Option<SonarRing>,
+    device: Device<usize>,
+    ties: Ties,
 }
 
 impl FolderLog {
     pub(super) fn open(folder: &Path, options: &LogOptions) -> Result<Self, LogError> {
-        let name = match options.sensor {
-            Sensor::Sonar => "sonar.txt",
-            Sensor::Laser => "laser.txt",
+        let (name, other) = match options.sensor {
+            Sensor::Sonar => ("sonar.txt", "laser.txt"),
+            Sensor::Laser => ("laser.txt", "sonar.txt"),
         };
+        if !folder.join(name).exists() && folder.join(other).exists() {
+            let (path, has) = (folder.to_owned(), other);
+            return Err(LogError::OtherSensor { path, name, has });
+        }
         Ok(Self::new(Lines::open(&file_in(folder, name)?)?, options))
     }
 
     pub(super) fn new(lines: Lines, options: &LogOptions) -> Self {
         let sonar = match options.sensor {
-            Sensor::Sonar => Some(Arc::new(options.ring.clone())),
+            Sensor::Sonar => Some(options.ring.clone()),
             Sensor::Laser => None,
         };
-        Self { lines, sonar, laser: Device::new(), clock: Clock::default() }
+        Self { lines, sonar, device: Device::new(), ties: Ties::default() }
     }
 
     pub(super) fn path(&self) -> &Path {
         self.lines.path()
     }
 
+    /// Whether its clock is too coarse to tell its lines apart.
+    pub(super) fn is_coarse(&self) -> bool {
+        self.ties.is_coarse()
+    }
+
     /// The next good frame, which says nothing of poses.
-    pub(super) fn next(&mut self, skipped: &mut Skipped) -> Result<Option<Measured>, LogError> {
+    pub(super) fn next(&mut self, account: &mut Account) -> Result<Option<Measured>, LogError> {
         while self.lines.advance()? {
-            skipped.add_frame();
-            match self.parse(skipped) {
+            account.skipped.add_frame();
+            match self.parse(account) {
                 Ok(measured) => return Ok(Some(measured)),
-                Err(damage) => skipped.add(self.lines.path(), self.lines.line(), damage),
+                Err(damage) => account.skipped.add(self.lines.path(), self.lines.line(), damage),
             }
         }
         Ok(None)
     }
 
-    fn parse(&mut self, skipped: &mut Skipped) -> Result<Measured, Damage> {
+    fn parse(&mut self, account: &mut Account) -> Result<Measured, Damage> {
         let text = self.lines.text();
         let mut fields = Fields::new(&text);
-        let time = fields.time("time", 1e3)?;
+        let stamp = Stamp { time: fields.time("time", 1e3)?, logger: None };
         let values = fields.ranges(fields.left(), PER_METRE)?;
         let ring = match &self.sonar {
-            Some(ring) => Arc::clone(ring),
-            None => self.laser.ring(checked(values.len())?, |count| laser(*count))?,
+            Some(ring) => self.device.ring(0, (0.0, 0.0), (account, "sonar.txt"), |_, told| {
+                let what = format!("{} sonars, their places, cones and ranges", ring.beams().len());
+                told.take(what, "the configuration");
+                Ok(ring.beams().to_vec())
+            })?,
+            None => {
+                let count = checked(values.len())?;
+                self.device.ring(count, (0.0, 0.0), (account, "laser.txt"), |count, told| {
+                    let beams = laser(*count);
+                    let step = short(180.0 / f64::from(u16::try_from(*count).unwrap_or(361) - 1));
+                    told.take(
+                        format!("{count} beams from -90° in steps of {step}°, longest range 81 m"),
+                        "as is usual in a folder",
+                    );
+                    Ok(beams)
+                })?
+            }
         };
-        let measured = Measured::new(&self.lines, time, ring, &values, skipped)?;
-        self.clock.check(time)?;
-        Ok(measured)
+        let measured = Measured::new(&self.lines, stamp, ring, &values, account)?;
+        Ok(Measured { tied: self.ties.add(stamp.time), ..measured })
     }
 }
 
@@ -85,7 +110,11 @@ fn file_in(folder: &Path, name: &'static str) -> Result<PathBuf, LogError> {
     if file.exists() {
         return Ok(file);
     }
-    Err(LogError::MissingFile { path: folder.to_owned(), name })
+    let path = folder.to_owned();
+    match foreign::folder_kind(folder) {
+        Some(kind) => Err(LogError::Foreign { path, kind }),
+        None => Err(LogError::MissingFile { path, name }),
+    }
 }
 
 fn checked(beams: usize) -> Result<usize, Damage> {

@@ -1,10 +1,11 @@
 //! The lines of a text file, plain or packed, and never too much of them.
 
-use super::LogError;
+use super::{LogError, foreign};
 use flate2::read::MultiGzDecoder;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The longest line that is read \[bytes\]: 4096 sonars with their places take half of it.
 pub(super) const LONGEST_LINE: usize = 1 << 20;
@@ -13,12 +14,15 @@ pub(super) const LONGEST_LINE: usize = 1 << 20;
 pub(super) const MOST_RATIO: u64 = 300;
 /// So much may always be unpacked \[bytes\].
 const ALWAYS_UNPACKED: u64 = 16 << 20;
+/// So much of the beginning can be looked at before the first line is read \[bytes\].
+const HEAD: u64 = 1 << 20;
 
 type Input = Box<dyn Read + Send>;
 
 /// The lines of a file, one after the other.
 pub(super) struct Lines {
     path: PathBuf,
+    head: Arc<[u8]>,
     input: BufReader<Input>,
     packed: bool,
     line: usize,
@@ -28,12 +32,7 @@ pub(super) struct Lines {
 impl Lines {
     /// The lines of a file.
     pub(super) fn open(path: &Path) -> Result<Self, LogError> {
-        let io = |source| LogError::Io { path: path.to_owned(), source };
-        // Looked at first: to open a pipe may take for ever.
-        if !std::fs::metadata(path).map_err(io)?.is_file() {
-            return Err(LogError::NotAFile { path: path.to_owned() });
-        }
-        Self::new(path, File::open(path).map_err(io)?)
+        Self::new(path, open(path)?)
     }
 
     /// The lines of `input`, which `path` names in errors.
@@ -42,18 +41,41 @@ impl Lines {
         mut input: impl Read + Send + 'static,
     ) -> Result<Self, LogError> {
         let io = |source| LogError::Io { path: path.to_owned(), source };
-        let mut head = Vec::new();
-        input.by_ref().take(2).read_to_end(&mut head).map_err(io)?;
-        let packed = head == [0x1f, 0x8b];
-        let whole = Cursor::new(head).chain(input);
-        let input: Input = if packed {
+        let mut magic = Vec::new();
+        input.by_ref().take(2).read_to_end(&mut magic).map_err(io)?;
+        let packed = magic == [0x1f, 0x8b];
+        let whole = Cursor::new(magic).chain(input);
+        let mut rest: Input = if packed {
             let packed = Counted { input: BufReader::new(whole), bytes: 0 };
             Box::new(Unpacker { decoder: MultiGzDecoder::new(packed), unpacked: 0 })
         } else {
             Box::new(whole)
         };
+        let mut head = Vec::new();
+        // What was read before an error is read again before it.
+        let error = rest.by_ref().take(HEAD).read_to_end(&mut head).err();
+        let head: Arc<[u8]> = head.into();
+        if let Some(kind) = foreign::kind(&head) {
+            return Err(LogError::Foreign { path: path.to_owned(), kind });
+        }
+        let input: Input = Box::new(Begun { head: Cursor::new(Arc::clone(&head)), error, rest });
         let (path, input) = (path.to_owned(), BufReader::with_capacity(1 << 16, input));
-        Ok(Self { path, input, packed, line: 0, bytes: Vec::new() })
+        Ok(Self { path, head, input, packed, line: 0, bytes: Vec::new() })
+    }
+
+    /// The first lines, without one that may go on.
+    pub(super) fn head(&self) -> impl Iterator<Item = &[u8]> {
+        let whole = if self.head.len() as u64 == HEAD {
+            self.head.iter().rposition(|byte| *byte == b'\n').unwrap_or(0)
+        } else {
+            self.head.len()
+        };
+        self.head[..whole].split(|byte| *byte == b'\n')
+    }
+
+    /// Gives back the memory of what [`Lines::head`] looks at.
+    pub(super) fn forget_head(&mut self) {
+        self.head = Arc::new([]);
     }
 
     pub(super) fn path(&self) -> &Path {
@@ -102,6 +124,32 @@ impl Lines {
             io::ErrorKind::FileTooLarge if self.packed => LogError::Unpacked { path, line },
             _ if self.packed => LogError::Gzip { path, line, source },
             _ => LogError::Io { path, source },
+        }
+    }
+}
+
+/// Opens a file that can be read twice.
+fn open(path: &Path) -> Result<File, LogError> {
+    let io = |source| LogError::Io { path: path.to_owned(), source };
+    // Looked at first: to open a pipe may take for ever.
+    if !std::fs::metadata(path).map_err(io)?.is_file() {
+        return Err(LogError::NotAFile { path: path.to_owned() });
+    }
+    File::open(path).map_err(io)
+}
+
+/// What was looked at already, and what follows it.
+struct Begun {
+    head: Cursor<Arc<[u8]>>,
+    error: Option<io::Error>,
+    rest: Input,
+}
+
+impl Read for Begun {
+    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
+        match self.head.read(out)? {
+            0 if !out.is_empty() => self.error.take().map_or_else(|| self.rest.read(out), Err),
+            count => Ok(count),
         }
     }
 }

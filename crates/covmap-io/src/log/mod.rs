@@ -3,21 +3,33 @@
 //! [`LogReader`] reads CARMEN's text logs and folders of three files, and [`CarmenWriter`]
 //! writes the former. However long a log is, only a few of its frames are held at a time.
 
+mod account;
 mod carmen;
 mod carmen_line;
 mod carmen_writer;
+#[cfg(test)]
+mod clock_tests;
 mod device;
 mod error;
 mod fields;
 mod folder;
+mod foreign;
 mod lines;
+mod parameters;
 mod poses;
+mod queue;
 mod reader;
+#[cfg(test)]
+mod sensor_tests;
 mod skipped;
 #[cfg(test)]
 mod tests;
+mod track;
+mod way;
 
+pub use account::{Account, Readings, SensorAccount, Taken};
 pub use carmen_writer::{CarmenWriter, CarmenWriterError};
 pub use error::LogError;
 pub use reader::{LogFrame, LogOptions, LogReader, Sensor};
 pub use skipped::{SkipReason, Skipped};
+pub use way::Passed;

@@ -1,74 +1,17 @@
-//! Where the robot was, and when: poses in the order of time, and between them.
+//! Files of poses.
 
 use super::fields::Fields;
 use super::lines::Lines;
 use super::skipped::Damage;
+use super::track::{Fix, Middle, Place, Stamp, Ties, middle, pose_between};
 use super::{LogError, SkipReason, Skipped};
-use nalgebra::{Isometry2, Translation2};
-use std::collections::VecDeque;
 use std::f64::consts::PI;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Poses farther apart in time than this have nothing to say about what is between them \[s\].
-const LONGEST_GAP: f64 = 2.0;
-/// So many of the last poses are remembered.
-const REMEMBERED: usize = 64;
-
-/// What is known of a time.
-pub(super) enum At {
-    Pose(Isometry2<f64>),
-    /// It is later than all poses so far.
-    Later,
-    /// There are no poses close before and after it.
-    Unknown,
-}
-
-/// The last poses.
-#[derive(Default)]
-pub(super) struct Track {
-    poses: VecDeque<(f64, Isometry2<f64>)>,
-}
-
-impl Track {
-    /// Adds a pose at a time \[s\].
-    pub(super) fn push(&mut self, time: f64, pose: Isometry2<f64>) -> Result<(), Damage> {
-        if let Some((last, _)) = self.poses.back().filter(|(last, _)| time < *last) {
-            return Err(backwards(time, *last));
-        }
-        if self.poses.len() == REMEMBERED {
-            self.poses.pop_front();
-        }
-        self.poses.push_back((time, pose));
-        Ok(())
-    }
-
-    /// The pose at a time \[s\]: recorded, or between the two around it, on the straight line
-    /// and the shorter turn.
-    pub(super) fn at(&self, time: f64) -> At {
-        let after = self.poses.partition_point(|(t, _)| *t < time);
-        let Some((t1, b)) = self.poses.get(after) else { return At::Later };
-        if *t1 <= time {
-            return At::Pose(*b);
-        }
-        match after.checked_sub(1).map(|before| self.poses[before]) {
-            Some((t0, a)) if t1 - t0 <= LONGEST_GAP => {
-                At::Pose(between(&a, b, (time - t0) / (t1 - t0)))
-            }
-            _ => At::Unknown,
-        }
-    }
-}
-
-/// The pose a share of the way from `a` to `b`.
-fn between(a: &Isometry2<f64>, b: &Isometry2<f64>, share: f64) -> Isometry2<f64> {
-    let place = a.translation.vector.lerp(&b.translation.vector, share);
-    let turn = a.rotation.rotation_to(&b.rotation).powf(share);
-    Isometry2::from_parts(Translation2::from(place), a.rotation * turn)
-}
-
-pub(super) fn backwards(time: f64, last: f64) -> Damage {
-    Damage::new(SkipReason::Backwards, format!("time: {time} s comes after {last} s"))
-}
+/// So many poses a file may have: they are held at the same time, in some 130 MB.
+pub(super) const MOST_POSES: usize = 2_000_000;
+/// Where a clock started anew, so many runs of time around the last are looked through.
+const RUNS_AROUND: usize = 8;
 
 /// The units of a file of poses.
 #[derive(Debug, Clone, Copy)]
@@ -84,12 +27,18 @@ impl Units {
     pub(super) const CORRECTED: Self = Self { per_metre: 1.0, per_radian: 1.0 };
 }
 
-/// A file with a time in milliseconds and a pose in each line, read no farther than asked.
+/// A file with a time in milliseconds and a pose in each line.
 pub(super) struct PoseFile {
-    lines: Lines,
+    path: PathBuf,
+    /// Its lines, until they are read.
+    lines: Option<Lines>,
     units: Units,
-    track: Track,
-    ended: bool,
+    fixes: Vec<Fix>,
+    /// Where runs of time that does not go back begin.
+    runs: Vec<usize>,
+    /// The run that was used last.
+    run: usize,
+    ties: Ties,
 }
 
 impl PoseFile {
@@ -98,86 +47,116 @@ impl PoseFile {
     }
 
     pub(super) fn new(lines: Lines, units: Units) -> Self {
-        Self { lines, units, track: Track::default(), ended: false }
+        let path = lines.path().to_owned();
+        let (fixes, runs, ties) = (Vec::new(), Vec::new(), Ties::default());
+        Self { path, lines: Some(lines), units, fixes, runs, run: 0, ties }
     }
 
-    /// The pose at a time \[s\], if it is known. Times must not run backwards far.
-    pub(super) fn at(
-        &mut self,
-        time: f64,
-        skipped: &mut Skipped,
-    ) -> Result<Option<Isometry2<f64>>, LogError> {
-        loop {
-            match self.track.at(time) {
-                At::Pose(pose) => return Ok(Some(pose)),
-                At::Unknown => return Ok(None),
-                At::Later if self.ended => return Ok(None),
-                At::Later => self.read_on(skipped)?,
+    pub(super) fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// How often its clock starts anew.
+    pub(super) fn restarts(&self) -> usize {
+        self.runs.len().saturating_sub(1)
+    }
+
+    /// Whether its clock is too coarse to tell its lines apart.
+    pub(super) fn is_coarse(&self) -> bool {
+        self.ties.is_coarse()
+    }
+
+    /// The fixes from one place to another.
+    pub(super) fn part(&self, first: usize, end: usize) -> &[Fix] {
+        self.fixes.get(first..end).unwrap_or_default()
+    }
+
+    /// Reads all of it, if that is not done yet.
+    pub(super) fn read(&mut self, skipped: &mut Skipped) -> Result<(), LogError> {
+        let Some(mut lines) = self.lines.take() else { return Ok(()) };
+        while lines.advance()? {
+            match parse(&lines, self.units) {
+                Ok(fix) => self.push(fix, skipped),
+                Err(damage) => skipped.add_pose(&self.path, lines.line(), &damage),
+            }
+            if self.fixes.len() > MOST_POSES {
+                let (path, line) = (self.path.clone(), lines.line());
+                return Err(LogError::TooManyPoses { path, line });
             }
         }
-    }
-
-    fn read_on(&mut self, skipped: &mut Skipped) -> Result<(), LogError> {
-        if !self.lines.advance()? {
-            self.ended = true;
-            return Ok(());
-        }
-        let parsed = self.parse().and_then(|(time, pose)| self.track.push(time, pose));
-        if let Err(damage) = parsed {
-            skipped.add_pose(self.lines.path(), self.lines.line(), &damage);
-        }
+        let time = |i: usize| self.fixes[i].stamp.time;
+        let begins = |i: &usize| *i == 0 || time(*i) < time(*i - 1);
+        self.runs = (0..self.fixes.len()).filter(begins).collect();
         Ok(())
     }
 
-    fn parse(&self) -> Result<(f64, Isometry2<f64>), Damage> {
-        let text = self.lines.text();
-        let mut fields = Fields::new(&text);
-        let Units { per_metre, per_radian } = self.units;
-        let time = fields.time("time", 1e3)?;
-        let pose = fields.pose(["x", "y", "theta"], per_metre, per_radian)?;
-        if fields.left() > 0 {
-            let fault = format!("theta: is followed by {} fields more", fields.left());
-            return Err(Damage::new(SkipReason::Unreadable, fault));
+    fn push(&mut self, fix: Fix, skipped: &mut Skipped) {
+        if self.fixes.last().is_none_or(|last| last.pose != fix.pose) {
+            self.ties.add(fix.stamp.time);
         }
-        Ok((time, pose))
+        let mut at = self.fixes.len();
+        if let [.., a, b] = *self.fixes {
+            match middle(a.stamp.time, b.stamp.time, fix.stamp.time) {
+                Middle::Good => {}
+                Middle::Late => at -= 1,
+                Middle::Glitch => {
+                    self.fixes.pop();
+                    at -= 1;
+                    skipped.add_pose(&self.path, b.line, &leapt(b.stamp.time));
+                }
+            }
+        }
+        self.fixes.insert(at, fix);
+    }
+
+    /// The pose at a time \[s\], if it is known.
+    pub(super) fn at(&mut self, time: f64) -> Option<Place> {
+        let (later, earlier) = (self.run..self.runs.len(), (0..self.run).rev());
+        let around = later.take(RUNS_AROUND).chain(earlier.take(RUNS_AROUND));
+        let (run, place) =
+            around.into_iter().find_map(|run| Some((run, self.in_run(run, time)?)))?;
+        self.run = run;
+        Some(place)
+    }
+
+    #[allow(clippy::float_cmp, reason = "a recorded time is found by its digits")]
+    fn in_run(&self, run: usize, time: f64) -> Option<Place> {
+        let first = self.runs[run];
+        let end = self.runs.get(run + 1).copied().unwrap_or(self.fixes.len());
+        let fixes = &self.fixes[first..end];
+        let after = fixes.partition_point(|fix| fix.stamp.time < time);
+        let b = fixes.get(after)?;
+        let pose = if b.stamp.time == time {
+            Some(b.pose)
+        } else {
+            let before = after.checked_sub(1).map(|before| &fixes[before]);
+            before.and_then(|a| pose_between(a, b, time))
+        };
+        Some((pose?, first + after))
+    }
+
+    /// The pose in a line.
+    pub(super) fn at_line(&self, line: usize) -> Option<Place> {
+        let found = self.fixes.binary_search_by_key(&line, |fix| fix.line).ok()?;
+        Some((self.fixes[found].pose, found))
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// What is said of a line for which the clock leapt.
+pub(super) fn leapt(time: f64) -> Damage {
+    let fault = format!("time: {time} s is not between those before and after");
+    Damage::new(SkipReason::Clock, fault)
+}
 
-    fn pose(x: f64, degrees: f64) -> Isometry2<f64> {
-        Isometry2::new([x, 0.0].into(), degrees.to_radians())
+fn parse(lines: &Lines, units: Units) -> Result<Fix, Damage> {
+    let text = lines.text();
+    let mut fields = Fields::new(&text);
+    let Units { per_metre, per_radian } = units;
+    let time = fields.time("time", 1e3)?;
+    let pose = fields.pose(["x", "y", "theta"], per_metre, per_radian)?;
+    if fields.left() > 0 {
+        let fault = format!("theta: is followed by {} fields more", fields.left());
+        return Err(Damage::new(SkipReason::Unreadable, fault));
     }
-
-    fn at(track: &Track, time: f64) -> Option<Isometry2<f64>> {
-        match track.at(time) {
-            At::Pose(pose) => Some(pose),
-            At::Later | At::Unknown => None,
-        }
-    }
-
-    #[test]
-    fn a_pose_between_two_is_on_the_line_and_on_the_shorter_turn() {
-        let mut track = Track::default();
-        track.push(10.0, pose(1.0, 170.0)).unwrap();
-        track.push(11.0, pose(3.0, -170.0)).unwrap();
-        let middle = at(&track, 10.5).unwrap();
-        assert!((middle.translation.x - 2.0).abs() < 1e-12);
-        assert!((middle.rotation.angle().abs() - PI).abs() < 1e-9);
-        assert_eq!(at(&track, 10.0), Some(pose(1.0, 170.0)));
-        assert_eq!(at(&track, 11.0), Some(pose(3.0, -170.0)));
-        assert!(matches!(track.at(9.9), At::Unknown) && matches!(track.at(11.1), At::Later));
-    }
-
-    #[test]
-    fn long_gaps_are_not_bridged_and_time_does_not_run_backwards() {
-        let mut track = Track::default();
-        track.push(10.0, pose(0.0, 0.0)).unwrap();
-        track.push(13.0, pose(1.0, 0.0)).unwrap();
-        assert!(matches!(track.at(11.0), At::Unknown));
-        assert_eq!(track.push(12.0, pose(0.5, 0.0)).unwrap_err().reason, SkipReason::Backwards);
-        assert_eq!(at(&track, 13.0), Some(pose(1.0, 0.0)));
-    }
+    Ok(Fix { stamp: Stamp { time, logger: None }, line: lines.line(), pose })
 }

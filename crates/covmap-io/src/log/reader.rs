@@ -6,7 +6,8 @@ use super::folder::{self, FolderLog};
 use super::lines::Lines;
 use super::poses::{PoseFile, Units};
 use super::skipped::Damage;
-use super::{LogError, SkipReason, Skipped};
+use super::way::Way;
+use super::{Account, LogError, Passed, SkipReason, Skipped, foreign};
 use covmap_sonar::{Scan, SonarRing};
 use std::fmt;
 use std::io::Read;
@@ -18,7 +19,8 @@ use std::sync::Arc;
 pub enum Sensor {
     /// `SONAR`, or `sonar.txt`.
     Sonar,
-    /// `FLASER` or `ROBOTLASER1`, or `laser.txt`: a ring of beams without width.
+    /// `FLASER`, `RLASER`, `ROBOTLASER1`–`2` or `RAWLASER1`–`5`, or `laser.txt`: rings of beams
+    /// without width.
     Laser,
 }
 
@@ -40,34 +42,42 @@ pub struct LogOptions {
 pub struct LogFrame {
     /// The scan. Its pose is the robot's, also if the ring is a laser on it.
     pub scan: Scan,
-    /// The ring, the same for all frames of a log.
+    /// The ring. All frames of a log have the same, unless it has several lasers, or states
+    /// other ranges on its way.
     pub ring: Arc<SonarRing>,
+    /// Where the odometry passed since the frame before; the last is where it saw the robot at
+    /// the scan.
+    pub way: Vec<Passed>,
     /// The line of the log that has it, counted from 1.
     pub line: usize,
 }
 
 enum Source {
     Carmen(Box<CarmenLog>),
-    Folder(FolderLog),
+    Folder(Box<FolderLog>),
 }
 
-/// The frames of a log, one after the other, in the order of time.
+/// The frames of a log, one after the other, in the order of its lines.
 ///
 /// A frame that is wrong is passed over and counted, [`LogReader::skipped`]. An error is the
 /// end: nothing comes after it. A log in which not one frame is good ends with
 /// [`LogError::NoScans`].
 ///
 /// A log is one of
-/// - a text log of CARMEN, with lines `PARAM`, `ODOM`, `SONAR`, `FLASER`, `ROBOTLASER1`; others
-///   are passed over, as are comments after `#`. It may be packed with gzip, whatever its
-///   name. `SONAR` has no pose: it is taken between the two `ODOM` around its time, if they are
-///   no more than 2 s apart;
+/// - a text log of CARMEN, with lines `PARAM`, `ODOM`, `TRUEPOS`, `SONAR`, and those of
+///   [`Sensor::Laser`]; others are passed over, as are comments after `#`. It may be packed with
+///   gzip, whatever its name. `SONAR` and `RAWLASER` have no pose: it is taken between the two
+///   `ODOM` around their time, if they are no more than 2 s apart. Where times are too coarse to
+///   tell lines apart, the order of lines and the logger's time place a frame. A clock may start
+///   anew; a line for which it leapt is passed over. Where `TRUEPOS` is (nearly) as frequent as
+///   `ODOM`, it has all poses;
 /// - a folder with `od.txt` (`t x y theta`: ms, mm, mm, 1/10°), `sonar.txt` (`t s0 s1 …`: ms,
 ///   mm) and `laser.txt` (`t r0 … r360`: ms, mm, from −90° counter-clockwise in steps of ½°, by
 ///   a laser 0.12 m before the robot's centre).
 ///
-/// A range of at least the sensor's longest is `NoEcho`. One below its shortest, 0, a
-/// negative one and NaN are `Missing`.
+/// A range of at least the sensor's longest is `NoEcho`, also if that is rounded to, or cut at,
+/// the decimal places of the range. One below its shortest, 0, a negative one and NaN are
+/// `Missing`. The longest range is what the log states; where it states several, the smallest.
 ///
 /// ```no_run
 /// use covmap_io::log::{LogOptions, LogReader, Sensor};
@@ -85,7 +95,11 @@ enum Source {
 pub struct LogReader {
     source: Source,
     poses: Option<PoseFile>,
-    skipped: Skipped,
+    /// Whether line i of the poses is frame i.
+    in_step: bool,
+    way: Way,
+    place: usize,
+    account: Account,
     wanted: &'static str,
     frames: usize,
     ended: bool,
@@ -99,12 +113,13 @@ impl LogReader {
     pub fn open(path: impl AsRef<Path>, options: &LogOptions) -> Result<Self, LogError> {
         let path = path.as_ref();
         if path.is_dir() {
-            let source = Source::Folder(FolderLog::open(path, options)?);
+            let source = Source::Folder(Box::new(FolderLog::open(path, options)?));
             let poses = match &options.poses {
                 Some(file) => PoseFile::open(file, Units::CORRECTED)?,
                 None => folder::odometry(path)?,
             };
-            return Ok(Self::new(source, Some(poses), options));
+            let in_step = options.poses.is_none();
+            return Ok(Self { in_step, ..Self::new(source, Some(poses), options) });
         }
         Self::of_lines(Lines::open(path)?, options)
     }
@@ -122,6 +137,9 @@ impl LogReader {
     }
 
     fn of_lines(lines: Lines, options: &LogOptions) -> Result<Self, LogError> {
+        if let Some(kind) = foreign::named(lines.path(), lines.head()) {
+            return Err(LogError::Foreign { path: lines.path().to_owned(), kind });
+        }
         let source = Source::Carmen(Box::new(CarmenLog::new(lines, options)));
         let file = options.poses.as_deref();
         let poses = file.map(|file| PoseFile::open(file, Units::CORRECTED)).transpose()?;
@@ -131,21 +149,37 @@ impl LogReader {
     /// The frames of a folder whose files were opened.
     #[cfg(test)]
     pub(super) fn of_files(frames: Lines, poses: PoseFile, options: &LogOptions) -> Self {
-        Self::new(Source::Folder(FolderLog::new(frames, options)), Some(poses), options)
+        let source = Source::Folder(Box::new(FolderLog::new(frames, options)));
+        Self { in_step: true, ..Self::new(source, Some(poses), options) }
     }
 
     fn new(source: Source, poses: Option<PoseFile>, options: &LogOptions) -> Self {
         let wanted = match (&source, options.sensor) {
             (Source::Carmen(_), Sensor::Sonar) => "line SONAR",
-            (Source::Carmen(_), Sensor::Laser) => "line FLASER or ROBOTLASER1",
+            (Source::Carmen(_), Sensor::Laser) => "line FLASER, ROBOTLASER or RAWLASER",
             (Source::Folder(_), _) => "line",
         };
-        Self { source, poses, skipped: Skipped::default(), wanted, frames: 0, ended: false }
+        let (in_step, way, place, account) = (false, Way::default(), 0, Account::default());
+        let (frames, ended) = (0, false);
+        Self { source, poses, in_step, way, place, account, wanted, frames, ended }
     }
 
     /// What was passed over so far, and why.
     pub fn skipped(&self) -> &Skipped {
-        &self.skipped
+        &self.account.skipped
+    }
+
+    /// What the log had so far, and what was taken from where.
+    pub fn account(&self) -> &Account {
+        &self.account
+    }
+
+    /// Where the odometry of a CARMEN log passed after its last frame.
+    pub fn rest(&mut self) -> Vec<Passed> {
+        match &mut self.source {
+            Source::Carmen(log) => log.rest(),
+            Source::Folder(_) => Vec::new(),
+        }
     }
 
     fn path(&self) -> &Path {
@@ -157,31 +191,66 @@ impl LogReader {
 
     fn measured(&mut self) -> Result<Option<Measured>, LogError> {
         match &mut self.source {
-            Source::Carmen(log) => log.next(&mut self.skipped),
-            Source::Folder(log) => log.next(&mut self.skipped),
+            Source::Carmen(log) => log.next(&mut self.account),
+            Source::Folder(log) => log.next(&mut self.account),
         }
     }
 
-    fn advance(&mut self) -> Result<Option<LogFrame>, LogError> {
-        while let Some(measured) = self.measured()? {
-            let Measured { line, time, ring, ranges, pose } = measured;
-            let pose = match &mut self.poses {
-                Some(poses) => poses.at(time, &mut self.skipped)?,
-                None => pose,
-            };
-            if let Some(pose) = pose {
-                self.frames += 1;
-                return Ok(Some(LogFrame { scan: Scan { pose, time, ranges }, ring, line }));
+    /// Finds the pose of a frame in the file of poses.
+    fn find_pose(&mut self, frame: &mut Measured) -> Result<(), LogError> {
+        let Some(poses) = &mut self.poses else { return Ok(()) };
+        if self.account.poses.is_empty() || self.frames == 0 {
+            poses.read(&mut self.account.skipped)?;
+            self.account.poses = poses.path().display().to_string();
+            self.account.restarts = poses.restarts();
+        }
+        let coarse = match &self.source {
+            Source::Folder(log) if self.in_step => {
+                frame.tied || log.is_coarse() || poses.is_coarse()
             }
-            let damage = Damage::new(SkipReason::NoPose, format!("there is no pose at {time} s"));
-            let path = self.path().to_owned();
-            self.skipped.add(&path, line, damage);
+            Source::Folder(_) | Source::Carmen(_) => false,
+        };
+        let in_line = if coarse { poses.at_line(frame.line) } else { None };
+        let Some((pose, place)) = in_line.or_else(|| poses.at(frame.stamp.time)) else {
+            return Ok(());
+        };
+        self.account.placed_by_order += usize::from(in_line.is_some());
+        // What was long before the first frame is no part of the log.
+        let first = if self.frames == 0 { place } else { self.place };
+        for (i, fix) in poses.part(first, place).iter().enumerate() {
+            self.way.push(first + i, fix);
+        }
+        self.place = place;
+        frame.pose = Some(pose);
+        frame.way = self.way.to(place, frame.stamp, pose);
+        Ok(())
+    }
+
+    fn advance(&mut self) -> Result<Option<LogFrame>, LogError> {
+        while let Some(mut measured) = self.measured()? {
+            self.find_pose(&mut measured)?;
+            let time = measured.stamp.time;
+            let Some(pose) = measured.pose else {
+                let fault = format!("there is no pose at {time} s");
+                let path = self.path().to_owned();
+                measured.skip(&path, Damage::new(SkipReason::NoPose, fault), &mut self.account);
+                continue;
+            };
+            let Measured { line, sensor, ring, ranges, unusable, way, .. } = measured;
+            self.account.sensors[sensor].count(&ranges, &unusable);
+            self.frames += 1;
+            return Ok(Some(LogFrame { scan: Scan { pose, time, ranges }, ring, way, line }));
         }
         if self.frames > 0 {
             return Ok(None);
         }
-        let skipped = Box::new(self.skipped.clone());
-        Err(LogError::NoScans { path: self.path().to_owned(), wanted: self.wanted, skipped })
+        let (path, wanted) = (self.path().to_owned(), self.wanted);
+        let others = match &self.source {
+            Source::Carmen(log) => log.unwanted(),
+            Source::Folder(_) => Vec::new(),
+        };
+        let skipped = Box::new(self.account.skipped.clone());
+        Err(LogError::NoScans { path, wanted, others, skipped })
     }
 }
 
@@ -200,11 +269,11 @@ impl Iterator for LogReader {
 
 impl fmt::Debug for LogReader {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { skipped, frames, ended, .. } = self;
+        let Self { account, frames, ended, .. } = self;
         f.debug_struct("LogReader")
             .field("path", &self.path())
             .field("frames", frames)
-            .field("skipped", skipped)
+            .field("account", account)
             .field("ended", ended)
             .finish_non_exhaustive()
     }

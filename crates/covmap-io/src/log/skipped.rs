@@ -10,8 +10,8 @@ pub enum SkipReason {
     Unreadable,
     /// There are not as many ranges as announced, or as the ring has sensors.
     Count,
-    /// It is older than the frame before it.
-    Backwards,
+    /// The clock leapt for it, ahead or back.
+    Clock,
     /// No poses shortly before and after it are known.
     NoPose,
     /// It comes from another sensor than the first frame, or from one mounted elsewhere.
@@ -21,13 +21,13 @@ pub enum SkipReason {
 const REASONS: [(SkipReason, &str); 5] = [
     (SkipReason::Unreadable, "cut short or unreadable"),
     (SkipReason::Count, "with a wrong number of ranges"),
-    (SkipReason::Backwards, "with time running backwards"),
+    (SkipReason::Clock, "for which the clock leapt"),
     (SkipReason::NoPose, "without a pose"),
     (SkipReason::Geometry, "of another sensor than the first"),
 ];
 
 /// Counts what was passed over. Displayed, it is a sentence such as
-/// `skipped 3 of 413 frames: 2 with a wrong number of ranges, 1 with time running backwards`.
+/// `skipped 3 of 413 frames: 2 with a wrong number of ranges, 1 for which the clock leapt`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Skipped {
     frames: usize,
@@ -101,7 +101,6 @@ impl Skipped {
 
 impl fmt::Display for Skipped {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let plural = |n: usize, word: &str| format!("{n} {word}{}", if n == 1 { "" } else { "s" });
         write!(f, "skipped {} of {}", self.total(), plural(self.frames, "frame"))?;
         let some = REASONS.iter().filter(|(reason, _)| self.count(*reason) > 0);
         for (i, (reason, words)) in some.enumerate() {
@@ -116,6 +115,11 @@ impl fmt::Display for Skipped {
         }
         self.first.as_ref().map_or(Ok(()), |first| write!(f, " (the first: {first})"))
     }
+}
+
+/// A number of things.
+pub(super) fn plural(n: usize, word: &str) -> String {
+    format!("{n} {word}{}", if n == 1 { "" } else { "s" })
 }
 
 /// Why a line cannot be used.
@@ -143,13 +147,13 @@ mod tests {
         (0..413).for_each(|_| skipped.add_frame());
         assert_eq!(skipped.to_string(), "skipped 0 of 413 frames");
         let path = Path::new("a.log");
-        skipped.add(path, 7, Damage::new(SkipReason::Backwards, "time: 3 s after 4 s"));
+        skipped.add(path, 7, Damage::new(SkipReason::Clock, "time: 3 s after 4 s"));
         skipped.add(path, 8, Damage::new(SkipReason::Count, "8 ranges"));
         skipped.add(path, 9, Damage::new(SkipReason::Count, "8 ranges"));
         assert_eq!(
             skipped.to_string(),
-            "skipped 3 of 413 frames: 2 with a wrong number of ranges, 1 with time running \
-             backwards (the first: a.log:7: time: 3 s after 4 s)"
+            "skipped 3 of 413 frames: 2 with a wrong number of ranges, 1 for which the clock \
+             leapt (the first: a.log:7: time: 3 s after 4 s)"
         );
         assert_eq!((skipped.total(), skipped.count(SkipReason::Count)), (3, 2));
     }

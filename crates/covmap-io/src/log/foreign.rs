@@ -1,0 +1,119 @@
+//! Files that people take for logs: what they are, and what reads them.
+
+use super::carmen_line::TAGS;
+use std::path::Path;
+
+const ROSBAG: &str = "a bag of ROS 1, which `rosbag` and the Python package `rosbags` read; write its \
+                      scans from there";
+const DB3: &str = "an SQLite database, such as rosbag2 writes (.db3), which `ros2 bag` and the \
+                   Python package `rosbags` read; write its scans from there";
+const MCAP: &str = "an MCAP recording, as of rosbag2, which `ros2 bag`, `mcap` and Foxglove read; \
+                    write its scans from there";
+const ROSBAG2: &str = "the folder of a rosbag2 recording, which `ros2 bag` and the Python package \
+                       `rosbags` read; write its scans from there";
+const CARMEN_MAP: &str = "a map of CARMEN, which its own tools read";
+const IMAGE: &str = "an image; a map of map_server is a world for `explore`, by its YAML file";
+const ARCHIVE: &str = "an archive; unpack it first";
+const PACKED: &str = "packed by something other than gzip; unpack it first";
+const YAML: &str = "a YAML file; a map of map_server is a world for `explore`";
+const RON: &str = "a RON file; a scenario is a world for `explore`";
+const JSON: &str = "a JSON file, and no log; `log` makes one of the folder that `explore` wrote";
+const RUN: &str = "the folder of a run; `log` makes a log of it";
+const MAP: &str = "the folder of a map that `map` or `explore` wrote";
+
+/// How the contents begin, and of what.
+const BEGINNINGS: [(&[u8], &str); 15] = [
+    (b"#ROSBAG", ROSBAG),
+    (b"SQLite format 3\0", DB3),
+    (b"\x89MCAP0", MCAP),
+    (b"CARMENMAPFILE", CARMEN_MAP),
+    (b"\x89PNG", IMAGE),
+    (b"\xff\xd8\xff", IMAGE),
+    (b"P5", IMAGE),
+    (b"P2", IMAGE),
+    (b"PK\x03\x04", ARCHIVE),
+    (b"7z\xbc\xaf\x27\x1c", ARCHIVE),
+    (b"BZh", PACKED),
+    (b"\xfd7zXZ", PACKED),
+    (b"\x28\xb5\x2f\xfd", PACKED),
+    (b"{\"covmap_trace\"", RUN),
+    (b"{", JSON),
+];
+
+/// How names end, where the contents say nothing.
+const ENDINGS: [(&str, &str); 12] = [
+    ("bag", ROSBAG),
+    ("db3", DB3),
+    ("mcap", MCAP),
+    ("map", CARMEN_MAP),
+    ("png", IMAGE),
+    ("pgm", IMAGE),
+    ("yaml", YAML),
+    ("yml", YAML),
+    ("ron", RON),
+    ("json", JSON),
+    ("tar", ARCHIVE),
+    ("zip", ARCHIVE),
+];
+
+/// What a file is that is no log, by how it begins.
+pub(super) fn kind(head: &[u8]) -> Option<&'static str> {
+    let begins = |(beginning, _): &&(&[u8], &str)| head.starts_with(beginning);
+    if let Some((_, kind)) = BEGINNINGS.iter().find(begins) {
+        return Some(kind);
+    }
+    (head.get(257..262) == Some(b"ustar")).then_some(ARCHIVE)
+}
+
+/// What a file is that has no lines of a log, by its name.
+pub(super) fn named<'a>(
+    path: &Path,
+    mut lines: impl Iterator<Item = &'a [u8]>,
+) -> Option<&'static str> {
+    let extension = path.extension()?.to_str()?.to_ascii_lowercase();
+    let (_, kind) = ENDINGS.iter().find(|(ending, _)| *ending == extension)?;
+    (!lines.any(is_of_a_log)).then_some(kind)
+}
+
+/// What a folder is that holds no log.
+pub(super) fn folder_kind(folder: &Path) -> Option<&'static str> {
+    let has = |name: &str| folder.join(name).exists();
+    if has("metadata.yaml") {
+        return Some(ROSBAG2);
+    }
+    if has("trace.jsonl") {
+        return Some(RUN);
+    }
+    has("belief.bin").then_some(MAP)
+}
+
+fn is_of_a_log(line: &[u8]) -> bool {
+    let word = line.split(u8::is_ascii_whitespace).find(|word| !word.is_empty());
+    word.is_some_and(|word| TAGS.iter().any(|tag| tag.as_bytes() == word))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[track_caller]
+    fn check(name: &str, head: &[u8], part: &str) {
+        let lines = head.split(|byte| *byte == b'\n');
+        let kind = kind(head).or_else(|| named(Path::new(name), lines)).unwrap_or("a log");
+        assert!(kind.contains(part), "{name}: {kind}");
+    }
+
+    #[test]
+    fn a_file_is_known_by_how_it_begins_and_by_its_name() {
+        check("a", b"#ROSBAG V2.0\n", "ROS 1");
+        check("a.log", b"SQLite format 3\0....", "rosbag2");
+        check("a", b"\x89MCAP0\r\n", "MCAP");
+        check("a.log", b"CARMENMAPFILEv020", "a map of CARMEN");
+        check("a.log", b"{\"covmap_trace\":1", "the folder of a run");
+        check("a.log", &[&[0; 257], &b"ustar"[..]].concat(), "an archive");
+        check("A.BAG", b"", "ROS 1");
+        check("a.ron", b"(name: 1)", "RON");
+        check("a.bag", b"# text\nODOM 1 2 3 0 0 0 1 h 1\n", "a log");
+        check("a.log", b"anything else", "a log");
+    }
+}
