@@ -131,7 +131,7 @@ fn files_are_opened_and_written_in_one_way() {
     for folder in ["crates/covmap-io/src", "xtask/src"] {
         for source in rust_files(&root().join(folder)) {
             let name = source.file_name().unwrap().to_str().unwrap();
-            if homes.contains(&name) || name == "tests.rs" {
+            if homes.contains(&name) || name.ends_with("tests.rs") {
                 continue;
             }
             looked_at += 1;
