@@ -1,7 +1,7 @@
 //! What the planner says of the cells: the certificate, what it can reach, and counts for progress.
 
 use crate::exploration::InSight;
-use crate::{CellStatus, Planner, travel_costs};
+use crate::{CellStatus, Planner, Scope, travel_costs};
 use covmap::{Cell, CoverageMap, Raster, neighbour};
 use serde::{Deserialize, Serialize};
 
@@ -36,7 +36,7 @@ impl Planner {
             let is_candidate = candidates.indices.binary_search(&view_point).is_ok();
             let sight = if is_candidate { InSight::Candidate } else { InSight::Spent };
             for (index, distance) in self.beams.cells_in_sight(view_point) {
-                if self.is_reason(index, distance) {
+                if self.is_open_reason(map, index, distance) {
                     in_sight[index] = in_sight[index].max(sight);
                 }
             }
@@ -46,11 +46,22 @@ impl Planner {
             let (known, entropy) = (map.is_known(cell), map.entropy(cell));
             self.exploration.status(index, known, entropy, in_sight[index])
         });
-        if certificate.values().contains(&CellStatus::Open) {
+        let is_over = !certificate.values().contains(&CellStatus::Open)
+            && self.candidates_beyond_a_passage(from).is_none();
+        if !is_over {
             let reached: Vec<usize> = candidates.costs.reached().collect();
             self.mark_not_seen(map, reached, &mut certificate);
         }
         certificate
+    }
+
+    /// Whether a cell is a reason to measure from so far away, for IG_WIN in closed windows, too.
+    fn is_open_reason(&self, map: &CoverageMap, index: usize, distance: f32) -> bool {
+        if self.window.is_none() {
+            return self.is_reason(index, distance);
+        }
+        let cell = self.grid.cell(index);
+        distance <= self.exploration.limit(index, map.is_known(cell), map.entropy(cell))
     }
 
     /// Of a run that is not over, tells cells that may come into sight from those that are out of
@@ -65,10 +76,12 @@ impl Planner {
         let mut seen = vec![false; self.grid.len()];
         front.iter().for_each(|index| seen[*index] = true);
         while let Some(at) = front.pop() {
-            if certificate[at] == CellStatus::Unreachable {
+            let cell = self.grid.cell(at);
+            // By the paper's words, what is known and no place to stand is out of scope for good.
+            let in_scope = self.parameters().scope == Scope::Observable || !map.is_known(cell);
+            if certificate[at] == CellStatus::Unreachable && in_scope {
                 certificate[at] = CellStatus::NotSeen;
             }
-            let cell = self.grid.cell(at);
             if map.is_known(cell) && map.mode(cell) >= OPAQUE || self.exploration.is_outside(at) {
                 continue;
             }

@@ -50,7 +50,7 @@ pub struct Planner {
     pub(crate) exploration: Exploration,
     pub(crate) beams: BeamCache,
     pub(crate) measured: Measured,
-    window: Option<Window>,
+    pub(crate) window: Option<Window>,
     /// The chosen view-point, and what was in sight of it when it was chosen.
     target: Option<(Cell, Vec<(usize, f32)>)>,
 }
@@ -190,7 +190,8 @@ impl Planner {
     }
 
     /// Takes note that the robot bumped into something when it drove from one cell to a
-    /// neighbour: that step is closed, and the cell is blocked unless the robot stood there.
+    /// neighbour: that step is closed, and if it is a straight one the cell is blocked, unless the
+    /// robot stood there.
     pub fn bump(&mut self, from: Cell, to: Cell) {
         self.traversable.bump(from, to);
         self.target = None;
