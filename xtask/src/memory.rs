@@ -22,7 +22,12 @@ pub(crate) fn check_run(grid: &Grid, config: &Config, at_once: usize) -> Result<
     let bytes = run_bytes(config, grid)?.saturating_mul(times);
     let several = if at_once > 1 { format!("{at_once} times ") } else { String::new() };
     let beams = config.build()?.0.beams().len();
-    check(bytes, || format!("{several}{} and a planner for {beams} sensors", map_of(grid, config)))
+    let resolution = config.resolution;
+    check(bytes, || match grid.len() {
+        // Of whatever world.
+        1 => format!("the planner's tables for {beams} sensors in cells of {resolution} m"),
+        _ => format!("{several}{} and a planner for {beams} sensors", map_of(grid, config)),
+    })
 }
 
 /// How many runs with a configuration on a grid fit at the same time; at least one.
@@ -50,11 +55,18 @@ fn check(bytes: u64, what: impl Fn() -> String) -> Result<()> {
     if bytes <= limit {
         return Ok(());
     }
-    #[allow(clippy::cast_precision_loss, reason = "printed with one digit")]
-    let [needed, allowed] = [bytes, limit].map(|bytes| bytes as f64 / GIB);
     bail!(
-        "{} would take about {needed:.1} GiB of memory, more than {allowed:.1}; use a coarser \
-         resolution, or allow more with --memory",
-        what()
+        "{} would take about {} of memory, more than {}; use a coarser resolution, or allow more \
+         with --memory",
+        what(),
+        amount(bytes),
+        amount(limit)
     )
+}
+
+/// An amount of memory as one would say it.
+fn amount(bytes: u64) -> String {
+    #[allow(clippy::cast_precision_loss, reason = "printed with one digit")]
+    let gib = bytes as f64 / GIB;
+    if gib < 1.0 { format!("{:.0} MiB", 1024.0 * gib) } else { format!("{gib:.1} GiB") }
 }

@@ -157,9 +157,9 @@ fn what_would_take_too_much_memory_is_refused_before_it_does() {
     };
     shell.write("plain.ron", room("1000"));
     let more = |allowed: &str| format!("of memory, more than {allowed}; use a coarser resolution");
-    let parts = &["plain.ron", "4004 × 4004 cells", "GiB", &more("4.0")];
+    let parts = &["plain.ron", "4004 × 4004 cells", "GiB", &more("4.0 GiB")];
     shell.refuse("explore plain.ron --resolution 0.25", parts);
-    shell.refuse(&format!("explore {lab} --memory 0.01"), &["24 sensors", &more("0.0")]);
+    shell.refuse(&format!("explore {lab} --memory 0.01"), &["24 sensors", &more("10 MiB")]);
     let config = std::fs::read_to_string(shipped("configs/b21r.ron")).unwrap();
     let ring =
         "ring: Circle(count: 4096, radius: 0.25, half_angle: 0.2, min_range: 0.1, max_range: 10)";
@@ -171,7 +171,7 @@ fn what_would_take_too_much_memory_is_refused_before_it_does() {
     shell.write("fine.ron", fine);
     shell.refuse(
         &format!("explore {lab} --config fine.ron"),
-        &["fine.ron", "4096 sensors", &more("4.0")],
+        &["fine.ron", "4096 sensors", &more("4.0 GiB")],
     );
     let typed = shell.expect(&format!("explore {lab} --memory 0"), 2);
     assert!(typed.err.contains("--memory"), "{typed:?}");
