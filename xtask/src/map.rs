@@ -302,7 +302,7 @@ fn write(
     (arguments, config): (&Map, &Config),
 ) -> Result<MapCounts> {
     let thresholds = arguments.safe_map.thresholds(&config.planner);
-    let counts = results::write_map(folder, &mapper.map, &thresholds)?;
+    let counts = results::write_map(folder, &mapper.map, &thresholds, |_| true)?;
     let pictures = MapPictures { mapper, summary, explored: config.planner.entropy_threshold };
     pictures.coverage().save(folder.path("coverage.png"))?;
     pictures.entropy().save(folder.path("entropy.png"))?;

@@ -3,7 +3,7 @@
 use crate::explore::Task;
 use crate::pictures::Pictures;
 use anyhow::Result;
-use covmap::CoverageMap;
+use covmap::{Cell, CoverageMap};
 use covmap_explore::{CutOff, Run, Summary, Truth};
 use covmap_io::{
     MapCounts, MapThresholds, OutputFolder, Replace, save_map_server, write_file, write_json,
@@ -14,10 +14,11 @@ pub(crate) fn write_map(
     folder: &OutputFolder,
     map: &CoverageMap,
     thresholds: &MapThresholds,
+    may_be_free: impl Fn(Cell) -> bool,
 ) -> Result<MapCounts> {
     let belief = folder.path("belief.bin");
     write_file(belief, &map.to_bytes(), Replace::Any)?;
-    Ok(save_map_server(folder.partial(), "map", map, thresholds)?)
+    Ok(save_map_server(folder.partial(), "map", map, thresholds, may_be_free)?)
 }
 
 /// A line of the report: what other software is told.
@@ -48,7 +49,8 @@ pub(crate) fn write(
         hash,
     );
 
-    let counts = write_map(folder, &run.map, thresholds)?;
+    let is_inside = |cell| mission.outside.get(cell) == Some(&false);
+    let counts = write_map(folder, &run.map, thresholds, is_inside)?;
     let pictures = Pictures { mission, run, truth: &truth, summary: &summary };
     pictures.coverage().save(folder.path("coverage.png"))?;
     pictures.entropy().save(folder.path("entropy.png"))?;

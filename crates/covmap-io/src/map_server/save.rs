@@ -43,12 +43,12 @@ impl MapThresholds {
         self.entropy.min(next_to_nothing)
     }
 
-    fn grey(&self, map: &CoverageMap, cell: Cell) -> u8 {
+    fn grey(&self, map: &CoverageMap, cell: Cell, may_be_free: bool) -> u8 {
         let is_resolved = map.entropy(cell) <= self.largest_entropy(map.bins());
         match map.mode(cell) {
             _ if !(map.is_known(cell) && is_resolved) => UNKNOWN,
             mode if mode >= self.occupied => OCCUPIED,
-            mode if mode <= self.free => FREE,
+            mode if mode <= self.free && may_be_free => FREE,
             _ => UNKNOWN,
         }
     }
@@ -74,7 +74,8 @@ impl MapThresholds {
 ///
 /// ```text
 /// free       grey 254   the cell is known, its entropy at most `entropy` (and ½ ln n),
-///                       and its most likely coverage at most `free`
+///                       its most likely coverage at most `free`, and it `may_be_free`:
+///                       beyond the extent of what was explored nothing is
 /// occupied   grey 0     the same, but its most likely coverage at least `occupied`
 /// unknown    grey 205   all else: (255 − 205)/255 = .196078 > .196, the `free_thresh`
 /// ```
@@ -89,6 +90,7 @@ pub fn save_map_server(
     stem: &str,
     map: &CoverageMap,
     thresholds: &MapThresholds,
+    may_be_free: impl Fn(Cell) -> bool,
 ) -> Result<MapCounts, FileError> {
     let folder = folder.as_ref();
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
@@ -99,7 +101,8 @@ pub fn save_map_server(
         });
     }
     let grid = map.grid();
-    let greys: Vec<u8> = grid.cells().map(|cell| thresholds.grey(map, cell)).collect();
+    let grey = |cell| thresholds.grey(map, cell, may_be_free(cell));
+    let greys: Vec<u8> = grid.cells().map(grey).collect();
     let from_top: Vec<u8> = greys.chunks_exact(grid.width()).rev().flatten().copied().collect();
     let comment = thresholds.in_words(map);
     let image = pgm_bytes(grid.width(), grid.height(), &comment, &from_top);
@@ -145,7 +148,7 @@ mod tests {
     /// The greys of the image, and the counts.
     fn save(map: &CoverageMap, thresholds: &MapThresholds) -> (Vec<u8>, MapCounts) {
         let folder = tempfile::tempdir().unwrap();
-        let counts = save_map_server(folder.path(), "map", map, thresholds).unwrap();
+        let counts = save_map_server(folder.path(), "map", map, thresholds, |_| true).unwrap();
         let image = std::fs::read(folder.path().join("map.pgm")).unwrap();
         (image[image.len() - map.grid().len()..].to_vec(), counts)
     }
@@ -196,7 +199,7 @@ mod tests {
     fn both_files_say_which_thresholds_were_used() {
         let folder = tempfile::tempdir().unwrap();
         let thresholds = MapThresholds { entropy: 0.45, free: 0.1, occupied: 0.75 };
-        save_map_server(folder.path(), "map", &row_of(&[None]), &thresholds).unwrap();
+        save_map_server(folder.path(), "map", &row_of(&[None]), &thresholds, |_| true).unwrap();
         for name in ["map.pgm", "map.yaml"] {
             let file = std::fs::read(folder.path().join(name)).unwrap();
             let text = String::from_utf8_lossy(&file);
@@ -213,7 +216,7 @@ mod tests {
     #[test]
     fn a_name_that_leaves_the_folder_is_refused() {
         for stem in ["", "../map", "a: b", ".hidden", "-"] {
-            let saved = save_map_server("nowhere", stem, &row_of(&[None]), &THRESHOLDS);
+            let saved = save_map_server("nowhere", stem, &row_of(&[None]), &THRESHOLDS, |_| true);
             assert!(matches!(saved, Err(FileError::Unwritable { .. })));
         }
     }
@@ -233,7 +236,7 @@ mod tests {
                 }
             }
             let folder = tempfile::tempdir().unwrap();
-            let counts = save_map_server(folder.path(), "map", &map, &THRESHOLDS).unwrap();
+            let counts = save_map_server(folder.path(), "map", &map, &THRESHOLDS, |_| true).unwrap();
             let read = load_map_server(folder.path().join("map.yaml"));
             if counts.unknown == 12 {
                 prop_assert!(read.unwrap_err().to_string().contains("are unknown"));
