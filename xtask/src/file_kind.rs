@@ -1,7 +1,8 @@
 //! What a file is that was given as a world and is none, and what reads it.
 
 use anyhow::{Error, anyhow};
-use covmap_io::{read_beginning, read_ron};
+use covmap_io::log::is_of_a_log;
+use covmap_io::{Signature, read_beginning, read_ron, signature};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::path::Path;
@@ -121,32 +122,30 @@ fn of_content(file: &Path) -> Option<Kind> {
     let bytes = read_beginning(file, BEGINNING).ok()?;
     let text = String::from_utf8_lossy(&bytes);
     let name = file.display();
-    let log = || kind("a log of CARMEN", format!("`cargo xtask map {name}` makes the map of it"));
-    match &*bytes {
-        [b'#', b'R', b'O', b'S', b'B', b'A', b'G', ..] => return kind("a bag of ROS 1", BAGS),
-        [0x89, b'M', b'C', b'A', b'P', ..] => return kind("a bag of ROS 2", BAGS),
-        [0x1f, 0x8b, ..] if has_ending(file, &["map"]) => {
+    match signature(&bytes) {
+        Some(Signature::RosBag) => return kind("a bag of ROS 1", BAGS),
+        Some(Signature::Sqlite | Signature::Mcap) => return kind("a bag of ROS 2", BAGS),
+        Some(Signature::CarmenMap) => return kind("a map of CARMEN", PLANS),
+        Some(Signature::Gzip) if has_ending(file, &["map"]) => {
             return kind("a packed map of CARMEN", PLANS);
         }
-        [0x1f, 0x8b, ..] => {
+        Some(Signature::Gzip) => {
             let reader = format!("if it is a log of CARMEN, `cargo xtask map {name}` reads it");
             return kind("packed with gzip", reader);
         }
-        [0x89, b'P', b'N', b'G', ..] | [b'P', b'2' | b'5', ..] => return image(file),
-        [0xff, 0xd8, 0xff, ..] | [b'G', b'I', b'F', b'8', ..] => {
+        Some(Signature::MapImage) => return image(file),
+        Some(Signature::Jpeg | Signature::Gif) => {
             return kind(
                 "an image",
                 "make it PNG, and describe it in a YAML file as map_server does",
             );
         }
-        [b'C', b'O', b'V', b'M', b'A', b'P', ..] => {
+        None if bytes.starts_with(b"COVMAP") => {
             return kind("the posterior of a map", "give the map.yaml beside it");
         }
-        _ => {}
+        Some(Signature::Archive | Signature::Packed) | None => {}
     }
     for (word, what, reader) in [
-        ("SQLite format 3", "a bag of ROS 2", BAGS),
-        ("CARMENMAPFILE", "a map of CARMEN", PLANS),
         ("\"verts\"", "a house of HouseExpo", PLANS),
         ("\"covmap_trace\"", "the trace of a run", "`cargo xtask explain` reads its folder"),
         ("rosbag2_bagfile_information", "the description of a bag of ROS 2", BAGS),
@@ -156,12 +155,8 @@ fn of_content(file: &Path) -> Option<Kind> {
             return kind(what, reader);
         }
     }
-    let is_carmen = |line: &str| {
-        let tags = ["PARAM", "ODOM", "SONAR", "FLASER", "RLASER", "ROBOTLASER", "RAWLASER"];
-        line.split_whitespace().next().is_some_and(|tag| tags.iter().any(|t| tag.starts_with(t)))
-    };
-    if text.lines().any(is_carmen) {
-        return log();
+    if bytes.split(|byte| *byte == b'\n').any(is_of_a_log) {
+        return kind("a log of CARMEN", format!("`cargo xtask map {name}` makes the map of it"));
     }
     let known = ENDINGS.iter().find(|(endings, ..)| has_ending(file, endings));
     known.and_then(|(_, what, reader)| kind(what, *reader))

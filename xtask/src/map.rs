@@ -47,7 +47,7 @@ pub(crate) struct MapSummary {
     pub(crate) share_entropy_above_0_65: f64,
     pub(crate) seconds: f64,
     /// All readings of the log, by the lines that they stand in.
-    readings: BTreeMap<&'static str, ReadingCounts>,
+    readings: BTreeMap<&'static str, Readings>,
     /// What the map depends on, and what says so.
     pub(crate) taken_from: Vec<String>,
     /// What else there is to know of the log.
@@ -61,21 +61,6 @@ pub(crate) struct MapSummary {
 pub(crate) struct CellCounts {
     pub(crate) known: usize,
     pub(crate) unknown: usize,
-}
-
-#[derive(Debug, Serialize)]
-struct ReadingCounts {
-    echoes: usize,
-    no_echoes: usize,
-    missing: usize,
-    skipped: usize,
-}
-
-impl From<Readings> for ReadingCounts {
-    fn from(readings: Readings) -> Self {
-        let Readings { echoes, no_echoes, missing, skipped } = readings;
-        Self { echoes, no_echoes, missing, skipped }
-    }
 }
 
 pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
@@ -252,7 +237,7 @@ fn summary(
     let known = map.grid().cells().filter(|cell| map.is_known(*cell)).count();
     let account = &survey.account;
     let skipped: &Skipped = &account.skipped;
-    let readings = |sensor: &SensorAccount| (sensor.lines, sensor.total().into());
+    let readings = |sensor: &SensorAccount| (sensor.lines, sensor.total());
     MapSummary {
         world: log_name(&arguments.log),
         sensor: sensor_name(arguments.sensor),

@@ -96,7 +96,7 @@ fn series(noise: f64, points: Vec<ChartPoint>) -> Series {
     Series { name: format!("σ = {noise}"), points, line: true, marks: true }
 }
 
-/// The mean over all cells of a number after so many readings, from the 5th to the 95th percentile.
+/// The mean over all cells of a number after each count of readings, from the 5th to the 95th percentile.
 fn point(cells: &[Measured], readings: usize, of: impl Fn(&Histogram) -> f64) -> ChartPoint {
     let mut values: Vec<f64> = cells.iter().map(|cell| of(&cell[readings - 1])).collect();
     values.sort_by(f64::total_cmp);
@@ -153,7 +153,7 @@ fn error(cells: &[Vec<Measured>]) -> Chart {
     }
 }
 
-/// Panels that share a legend: the posterior after so many readings.
+/// Panels that share a legend: the posterior after some counts of readings.
 fn posteriors(cells: &[Vec<Measured>]) -> Figure {
     let panel = |readings: usize| {
         let curve = |(noise, cells): (f64, &Vec<Measured>)| {
@@ -174,7 +174,7 @@ fn posteriors(cells: &[Vec<Measured>]) -> Figure {
     };
     Figure {
         title: "The posterior of a cell that is covered 20 %".into(),
-        subtitle: format!("simulated; mean of {CELLS} cells, after so many readings"),
+        subtitle: format!("simulated; mean of {CELLS} cells, by the number of readings"),
         panels: [1, 4, 16, READINGS].map(panel).to_vec(),
         columns: 4,
     }

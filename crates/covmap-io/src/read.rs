@@ -18,13 +18,16 @@ pub const MAX_FILE: u64 = 64 << 20;
 /// If there is no such file, or it is none that can be read.
 pub fn open_input(path: impl AsRef<Path>) -> Result<File, FileError> {
     let path = path.as_ref();
-    let open = || {
-        check(std::fs::metadata(path)?.file_type())?;
-        let file = at_once().read(true).open(path)?;
-        check(file.metadata()?.file_type())?;
-        Ok(file)
-    };
-    open().map_err(FileError::io(path, "read"))
+    open_file(path).map_err(FileError::io(path, "read"))
+}
+
+/// As [`open_input`], with the error of the system; [`io::ErrorKind::Other`] means that it is no
+/// file.
+pub(crate) fn open_file(path: &Path) -> io::Result<File> {
+    check(std::fs::metadata(path)?.file_type())?;
+    let file = at_once().read(true).open(path)?;
+    check(file.metadata()?.file_type())?;
+    Ok(file)
 }
 
 fn check(kind: FileType) -> io::Result<()> {

@@ -29,6 +29,10 @@ pub(super) fn range(text: &str) -> Result<f64, String> {
     number(text, 1e-3, 100.0, " m")
 }
 
+pub(super) fn gib(text: &str) -> Result<f64, String> {
+    number(text, 0.01, 1e6, " GiB")
+}
+
 pub(super) fn entropy(text: &str) -> Result<f64, String> {
     number(text, 0.0, 5.0, " nats")
 }

@@ -3,6 +3,7 @@
 use super::Skipped;
 use super::skipped::plural;
 use covmap_sonar::Range;
+use serde::Serialize;
 
 /// What is known of a log from the frames that were read.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -49,7 +50,7 @@ pub struct Taken {
 }
 
 /// How many readings of each kind there are.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Readings {
     /// Something answered.
     pub echoes: usize,

@@ -1,6 +1,7 @@
 //! Files that people take for logs: what they are, and what reads them.
 
 use super::carmen_line::TAGS;
+use crate::{Signature, signature};
 use std::path::Path;
 
 const ROSBAG: &str = "a bag of ROS 1, which `rosbag` and the Python package `rosbags` read; write its \
@@ -21,25 +22,6 @@ const JSON: &str = "a JSON file, and no log; `log` makes one of the folder that 
 const RUN: &str = "the folder of a run; `log` makes a log of it";
 const MAP: &str = "the folder of a map that `map` or `explore` wrote";
 
-/// How the contents begin, and of what.
-const BEGINNINGS: [(&[u8], &str); 15] = [
-    (b"#ROSBAG", ROSBAG),
-    (b"SQLite format 3\0", DB3),
-    (b"\x89MCAP0", MCAP),
-    (b"CARMENMAPFILE", CARMEN_MAP),
-    (b"\x89PNG", IMAGE),
-    (b"\xff\xd8\xff", IMAGE),
-    (b"P5", IMAGE),
-    (b"P2", IMAGE),
-    (b"PK\x03\x04", ARCHIVE),
-    (b"7z\xbc\xaf\x27\x1c", ARCHIVE),
-    (b"BZh", PACKED),
-    (b"\xfd7zXZ", PACKED),
-    (b"\x28\xb5\x2f\xfd", PACKED),
-    (b"{\"covmap_trace\"", RUN),
-    (b"{", JSON),
-];
-
 /// How names end, where the contents say nothing.
 const ENDINGS: [(&str, &str); 12] = [
     ("bag", ROSBAG),
@@ -58,11 +40,18 @@ const ENDINGS: [(&str, &str); 12] = [
 
 /// What a file is that is no log, by how it begins.
 pub(super) fn kind(head: &[u8]) -> Option<&'static str> {
-    let begins = |(beginning, _): &&(&[u8], &str)| head.starts_with(beginning);
-    if let Some((_, kind)) = BEGINNINGS.iter().find(begins) {
-        return Some(kind);
+    match signature(head) {
+        Some(Signature::RosBag) => Some(ROSBAG),
+        Some(Signature::Sqlite) => Some(DB3),
+        Some(Signature::Mcap) => Some(MCAP),
+        Some(Signature::CarmenMap) => Some(CARMEN_MAP),
+        Some(Signature::MapImage | Signature::Jpeg) => Some(IMAGE),
+        Some(Signature::Archive) => Some(ARCHIVE),
+        Some(Signature::Packed) => Some(PACKED),
+        Some(Signature::Gif | Signature::Gzip) => None,
+        None if head.starts_with(b"{\"covmap_trace\"") => Some(RUN),
+        None => head.starts_with(b"{").then_some(JSON),
     }
-    (head.get(257..262) == Some(b"ustar")).then_some(ARCHIVE)
 }
 
 /// What a file is that has no lines of a log, by its name.
@@ -87,7 +76,8 @@ pub(super) fn folder_kind(folder: &Path) -> Option<&'static str> {
     has("belief.bin").then_some(MAP)
 }
 
-fn is_of_a_log(line: &[u8]) -> bool {
+/// Whether a line is one that logs of CARMEN have, by its first word.
+pub fn is_of_a_log(line: &[u8]) -> bool {
     let word = line.split(u8::is_ascii_whitespace).find(|word| !word.is_empty());
     word.is_some_and(|word| TAGS.iter().any(|tag| tag.as_bytes() == word))
 }

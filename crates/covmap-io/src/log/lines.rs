@@ -1,8 +1,8 @@
 //! The lines of a text file, plain or packed, and never too much of them.
 
 use super::{LogError, foreign};
+use crate::read::open_file;
 use flate2::read::MultiGzDecoder;
-use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -32,7 +32,11 @@ pub(super) struct Lines {
 impl Lines {
     /// The lines of a file.
     pub(super) fn open(path: &Path) -> Result<Self, LogError> {
-        Self::new(path, open(path)?)
+        let refused = |source: io::Error| match source.kind() {
+            io::ErrorKind::Other => LogError::NotAFile { path: path.to_owned() },
+            _ => LogError::Io { path: path.to_owned(), source },
+        };
+        Self::new(path, open_file(path).map_err(refused)?)
     }
 
     /// The lines of `input`, which `path` names in errors.
@@ -126,16 +130,6 @@ impl Lines {
             _ => LogError::Io { path, source },
         }
     }
-}
-
-/// Opens a file that can be read twice.
-fn open(path: &Path) -> Result<File, LogError> {
-    let io = |source| LogError::Io { path: path.to_owned(), source };
-    // Looked at first: to open a pipe may take for ever.
-    if !std::fs::metadata(path).map_err(io)?.is_file() {
-        return Err(LogError::NotAFile { path: path.to_owned() });
-    }
-    File::open(path).map_err(io)
 }
 
 /// What was looked at already, and what follows it.

@@ -30,6 +30,7 @@ mod way;
 pub use account::{Account, Readings, SensorAccount, Taken};
 pub use carmen_writer::{CarmenWriter, CarmenWriterError};
 pub use error::LogError;
+pub use foreign::is_of_a_log;
 pub use reader::{LogFrame, LogOptions, LogReader, Sensor};
 pub use skipped::{SkipReason, Skipped};
 pub use way::Passed;

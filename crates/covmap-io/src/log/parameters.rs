@@ -194,8 +194,8 @@ impl Laser {
     }
 }
 
-/// From the first beam, and in steps \[rad\], so many beams are spread: as their field of view
-/// says it, or as is usual for their number.
+/// Where the first of `count` beams points, and the step from each to the next \[rad\]: as their
+/// field of view says it, or as is usual for their number.
 fn spread(
     count: usize,
     start: Option<f64>,
