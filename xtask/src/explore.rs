@@ -32,10 +32,10 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
     if let Some(widest) = arguments.registers {
         widest.limit();
     }
-    let (task, remarks) = task(arguments)?;
+    let (task, remarks, world) = task(arguments)?;
     let inputs = [Some(&arguments.world), arguments.config.as_ref()];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
-    let run = run_line(arguments, &task)?;
+    let run = run_line(&task, world)?;
     let folder = output::folder(&folder_name(arguments, &task)?, &run, arguments.force, &inputs)?;
     if !arguments.quiet {
         remarks.say();
@@ -57,11 +57,12 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
     Ok(ExitCode::from(exit_code(run.ending)))
 }
 
-fn task(arguments: &Explore) -> Result<(Task, Remarks)> {
+/// What is to be done, what there is to say about the world, and what tells that from others.
+fn task(arguments: &Explore) -> Result<(Task, Remarks, Vec<u8>)> {
     let (config, name) = input::config(arguments.config.as_deref())?;
     let config = overridden(config, arguments);
     let read = world_file::read(&arguments.world, config.sonar.surface)?;
-    let WorldFile { world, remarks } = read;
+    let WorldFile { world, remarks, bytes } = read;
     let limits = Limits {
         while_driving: arguments.while_driving,
         max_scans: arguments.max_scans.map(|most| most.get()),
@@ -69,7 +70,7 @@ fn task(arguments: &Explore) -> Result<(Task, Remarks)> {
     let places = ((&world, arguments.world.as_path()), (&config, name.as_path()));
     let mission = input::mission(places.0, places.1, arguments.start, limits)?;
     let thresholds = arguments.safe_map.thresholds(&mission.config.planner);
-    Ok((Task { world, mission, seed: arguments.seed, thresholds }, remarks))
+    Ok((Task { world, mission, seed: arguments.seed, thresholds }, remarks, bytes))
 }
 
 /// The configuration with what was typed instead of what the file says.
@@ -111,14 +112,12 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
 }
 
 /// Which run it is: what the trace begins with, and the world.
-fn run_line(arguments: &Explore, task: &Task) -> Result<String> {
+fn run_line(task: &Task, world_bytes: Vec<u8>) -> Result<String> {
     let Task { world, mission, seed, .. } = task;
     let strategy = &mission.config.planner.strategy;
     let words = format!("explore {}, {strategy}, seed {seed}", world.name());
     let header = TraceHeader::new(mission, world.name(), *seed);
-    let digest = Digest::default()
-        .with(serde_json::to_vec(&header)?)
-        .with(output::world_bytes(&arguments.world)?);
+    let digest = Digest::default().with(serde_json::to_vec(&header)?).with(world_bytes);
     Ok(output::run_line(&words, digest))
 }
 

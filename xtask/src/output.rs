@@ -4,7 +4,7 @@ use crate::arguments::{Fit, Force};
 use crate::campaign::Digest;
 use anyhow::{Result, bail};
 use covmap_explore::Config;
-use covmap_io::{MAX_FILE, OutputFolder, Replace, load_map_server, read_bytes, shown};
+use covmap_io::{OutputFolder, Replace, shown};
 use std::path::{Path, PathBuf};
 
 /// A run in words, and all that its results are a function of as a hash.
@@ -61,14 +61,6 @@ fn inside<'a>(folder: &Path, inputs: &[&'a Path]) -> Option<&'a Path> {
     let is_inside =
         |input: &&&Path| input.canonicalize().is_ok_and(|input| input.starts_with(&folder));
     inputs.iter().find(is_inside).copied()
-}
-
-/// What the file of a world says: that of a scenario, or which cells of a map are solid.
-pub(crate) fn world_bytes(file: &Path) -> Result<Vec<u8>> {
-    if file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {
-        return Ok(read_bytes(file, MAX_FILE)?);
-    }
-    Ok(load_map_server(file)?.solid().values().iter().map(|solid| u8::from(*solid)).collect())
 }
 
 /// The hash of a log, or of the files that a folder has of one.

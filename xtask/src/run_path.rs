@@ -1,7 +1,7 @@
 //! Where the robot of a run drove between its scans, from the run's trace.
 
 use covmap::{Cell, Grid};
-use covmap_explore::{Event, TraceHeader};
+use covmap_explore::{Event, TraceHeader, standing_place};
 use nalgebra::{Isometry2, Point2};
 use std::collections::VecDeque;
 
@@ -94,13 +94,8 @@ impl RunPath {
         self.grid.cell_at(self.start.translation.vector.into()) == Some(cell)
     }
 
-    /// Where the robot stands in a cell.
     fn place(&self, cell: Cell) -> Point2<f64> {
-        if self.cramped && self.is_start(cell) {
-            self.start.translation.vector.into()
-        } else {
-            self.grid.center(cell)
-        }
+        standing_place(&self.grid, self.start.translation.vector.into(), self.cramped, cell)
     }
 
     fn drive(&mut self, to: Point2<f64>) {

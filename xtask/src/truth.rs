@@ -13,7 +13,7 @@ pub(crate) fn run(arguments: &Truth) -> Result<ExitCode> {
     let Truth { world: file, resolution, out, force } = arguments;
     let replace = output::replace(out, *force, &[file])?;
     // Coverage does not depend on how a surface answers.
-    let WorldFile { world, remarks } = world_file::read(file, Surface::Rough)?;
+    let WorldFile { world, remarks, .. } = world_file::read(file, Surface::Rough)?;
     let grid = world.grid(*resolution).map_err(about(file))?;
     let coverage = world.coverage(&grid);
     csv_file::write_to(out, replace, |table| {

@@ -3,7 +3,7 @@
 use crate::input::about;
 use crate::{file_kind, say};
 use anyhow::{Result, bail};
-use covmap_io::{MapServerMap, load_map_server, read_ron};
+use covmap_io::{MAX_FILE, MapServerMap, load_map_server, read_bytes, read_ron};
 use covmap_world::{Scenario, Surface, World};
 use std::path::Path;
 
@@ -11,6 +11,8 @@ use std::path::Path;
 pub(crate) struct WorldFile {
     pub(crate) world: World,
     pub(crate) remarks: Remarks,
+    /// What tells it from others: a scenario's file, or which cells of a map are solid.
+    pub(crate) bytes: Vec<u8>,
 }
 
 /// What there is to say about a map of map_server; nothing about a scenario.
@@ -36,14 +38,17 @@ pub(crate) fn read(file: &Path, surface: Surface) -> Result<WorldFile> {
     match extension.as_str() {
         "ron" => {
             let world = World::from_scenario(&scenario(file)?, surface).map_err(about(file))?;
-            Ok(WorldFile { world, remarks: Remarks::default() })
+            let bytes = read_bytes(file, MAX_FILE)?;
+            Ok(WorldFile { world, remarks: Remarks::default(), bytes })
         }
         "yaml" | "yml" => {
             let map = map(file)?;
             let name = file.file_stem().unwrap_or_default().to_string_lossy();
             let (solid, pose) = (map.solid(), &map.world_from_map);
             let world = World::from_turned_raster(&name, &solid, pose, surface);
-            Ok(WorldFile { world: world.map_err(about(file))?, remarks: remarks(file, &map) })
+            let bytes = solid.values().iter().map(|solid| u8::from(*solid)).collect();
+            let remarks = remarks(file, &map);
+            Ok(WorldFile { world: world.map_err(about(file))?, remarks, bytes })
         }
         _ => Err(file_kind::no_world(file)),
     }

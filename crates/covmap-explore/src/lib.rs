@@ -43,7 +43,7 @@ mod trace;
 pub use config::{Config, ConfigError, RobotParameters};
 pub use cut_off::CutOff;
 pub use memory::run_bytes;
-pub use mission::{Limits, Mission, MissionError};
+pub use mission::{Limits, Mission, MissionError, standing_place};
 pub use overridden::OverrideError;
 pub use robot::{RecordedRobot, Robot, SimulatedRobot};
 pub use run::{Ending, Run, View, explore};

@@ -1,7 +1,7 @@
 //! What is to be explored, and from where.
 
 use crate::{Config, ConfigError};
-use covmap::{Grid, Raster, short};
+use covmap::{Cell, Grid, Raster, short};
 use covmap_world::World;
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
@@ -139,7 +139,7 @@ impl Mission {
     }
 
     /// Checks what must hold of a mission that anybody may have put together, but for its
-    /// configuration ([`Config::build`]): whoever explores asks for it.
+    /// configuration ([`Config::build`]). [`explore`](crate::explore()) calls it.
     ///
     /// # Errors
     /// If a limit is impossible, the grids do not fit, or the start is not in the grid.
@@ -156,6 +156,12 @@ impl Mission {
         }
         Ok(())
     }
+}
+
+/// Where a robot stands in a cell \[m\]: on its centre; in the cell of a start \[m\] from which it
+/// does not get there, so that it is `cramped`, on the start itself.
+pub fn standing_place(grid: &Grid, start: Point2<f64>, cramped: bool, cell: Cell) -> Point2<f64> {
+    if cramped && grid.cell_at(start) == Some(cell) { start } else { grid.center(cell) }
 }
 
 /// The rectangle that is to be explored.

@@ -1,6 +1,6 @@
 //! The loop.
 
-use crate::{Event, Mission, MissionError, Robot};
+use crate::{Event, Mission, MissionError, Robot, standing_place};
 use covmap::{Cell, CoverageMap, Raster};
 use covmap_model::{Body, SensorModel, integrate};
 use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Reach};
@@ -197,11 +197,9 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         self.mission.limits.max_scans.is_some_and(|most| self.scans.len() >= most)
     }
 
-    /// Where the robot stands in a cell: on its centre, if it gets there.
     fn place(&self, cell: Cell) -> Point2<f64> {
-        let start = Point2::from(self.mission.start.translation.vector);
-        let is_start = self.mission.grid.cell_at(start) == Some(cell);
-        if self.cramped && is_start { start } else { self.mission.grid.center(cell) }
+        let Mission { grid, start, .. } = self.mission;
+        standing_place(grid, start.translation.vector.into(), self.cramped, cell)
     }
 
     fn decide(&mut self, decision: Decision) -> ControlFlow<()> {

@@ -58,13 +58,13 @@ impl Truth {
         let Mission { config, grid, start, .. } = mission;
         let coverage = world.coverage(grid);
         let at = Point2::from(start.translation.vector);
-        let reachable = world.reachable_cells(grid, at, config.robot.radius);
+        let steps = world.steps(grid, config.robot.radius);
+        let reachable = world.reachable_by(&steps, at, config.robot.radius);
         let seen = world.cells_seen(grid, &coverage, &reachable, config.model.usable_range);
         let observable = Raster::from_fn(*grid, |cell| {
             [&seen.in_sight, &seen.first_solid].iter().any(|r| r.get(cell) == Some(&true))
         });
         let (first_solid, first_smooth) = (seen.first_solid, seen.first_smooth);
-        let steps = world.steps(grid, config.robot.radius);
         Self { coverage, reachable, first_solid, first_smooth, steps, observable }
     }
 

@@ -113,7 +113,7 @@ struct Broken<'a> {
     robot: SimulatedRobot<'a>,
     /// What each sensor says instead of what it measures.
     says: Option<Range>,
-    /// It cannot drive after so many drives.
+    /// The number of drives after which it cannot drive any more.
     drives: usize,
 }
 

@@ -1,7 +1,7 @@
 //! What the planner says of the cells: the certificate, what it can reach, and counts for progress.
 
 use crate::exploration::InSight;
-use crate::{CellStatus, Planner, Scope, travel_costs};
+use crate::{CellStatus, Planner, Scope};
 use covmap::{Cell, CoverageMap, Raster, neighbour};
 use serde::{Deserialize, Serialize};
 
@@ -96,14 +96,10 @@ impl Planner {
 
     /// Where a robot in the cell `from` can drive, and what keeps it from all else.
     pub fn reach(&self, from: Cell) -> Raster<Reach> {
-        let costs = travel_costs(self.traversable.steps(), from);
-        Raster::from_fn(self.grid, |cell| {
-            let index = self.grid.index(cell).unwrap_or(0);
-            if costs.cost(index).is_some() {
-                Reach::Reached
-            } else {
-                self.traversable.obstacle(index)
-            }
+        let reached = self.traversable.steps().reached(self.grid.index(from));
+        Raster::from_fn(self.grid, |cell| match self.grid.index(cell) {
+            Some(index) if !reached[index] => self.traversable.obstacle(index),
+            _ => Reach::Reached,
         })
     }
 
@@ -131,7 +127,8 @@ impl Planner {
 
     /// Whether all that a robot in the cell `from` can reach is spent by one scan: it is shut in.
     pub fn is_confined(&self, from: Cell) -> bool {
-        let reached: Vec<usize> = travel_costs(self.traversable.steps(), from).reached().collect();
+        let reached = self.traversable.steps().reached(self.grid.index(from));
+        let reached: Vec<usize> = (0..self.grid.len()).filter(|i| reached[*i]).collect();
         let spends_all = |at: &usize| {
             let at = self.grid.cell(*at);
             reached.iter().all(|i| self.grid.cell(*i) == at || self.measured.is_near(*i, at))

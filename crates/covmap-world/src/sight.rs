@@ -83,15 +83,19 @@ impl World {
     /// It begins at the centre of the start's cell; or, if it cannot get there, from the start
     /// itself with steps to the centres of that cell's neighbours.
     pub fn reachable_cells(&self, grid: &Grid, start: Point2<f64>, radius: f64) -> Raster<bool> {
+        self.reachable_by(&self.steps(grid, radius), start, radius)
+    }
+
+    /// The same, by the steps of a disc that are known already.
+    pub fn reachable_by(&self, steps: &Steps, start: Point2<f64>, radius: f64) -> Raster<bool> {
+        let grid = steps.grid();
         let Some(home) = grid.cell_at(start).and_then(|cell| grid.index(cell)) else {
             return Raster::filled(*grid, false);
         };
-        let clearance = self.clearances(grid);
         let arrives = |i: usize| {
-            clearance[i] >= radius
-                && self.drive(start, grid.center(grid.cell(i)), radius) == Drive::Arrived
+            let center = grid.center(grid.cell(i));
+            self.clearance(center) >= radius && self.drive(start, center, radius) == Drive::Arrived
         };
-        let steps = self.steps_over(grid, &clearance, radius);
         if arrives(home) {
             return steps.reached([home]);
         }
