@@ -2,8 +2,9 @@
 
 use crate::{files, root};
 use covmap_explore::{Config, Event, Limits, Mission, SimulatedRobot, explore};
+use covmap_gain::GAIN_TOLERANCE;
 use covmap_io::read_ron;
-use covmap_plan::{GAIN_TOLERANCE, Strategy};
+use covmap_plan::Strategy;
 use covmap_world::{Scenario, Surface, World};
 use std::ops::ControlFlow;
 use std::path::Path;

@@ -35,7 +35,7 @@ impl Planner {
         for view_point in candidates.costs.reached() {
             let is_candidate = candidates.indices.binary_search(&view_point).is_ok();
             let sight = if is_candidate { InSight::Candidate } else { InSight::Spent };
-            for (index, distance) in self.beams.cells_in_sight(view_point) {
+            for (index, distance) in self.gains.cells_in_sight(view_point) {
                 if self.is_open_reason(map, index, distance) {
                     in_sight[index] = in_sight[index].max(sight);
                 }

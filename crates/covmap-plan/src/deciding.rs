@@ -1,12 +1,12 @@
 //! Which gains decide: all candidates are bounded, and those evaluated that may be the best.
 //!
-//! The bounds are found on probes and not proven ([`crate::gain::bound`]). Where a gain that is
+//! The bounds are found on probes and not proven ([`covmap_gain::GainCache::refresh_bounds`]). Where a gain that is
 //! evaluated is above its bound, all candidates are evaluated; a candidate that was passed over
 //! because its bound is too low, while all that were evaluated keep theirs, stays passed over.
 
 use crate::decision::{REPORTED, Score};
-use crate::view_points::ViewPoints;
-use crate::{CandidateRecord, GAIN_TOLERANCE, Planner};
+use crate::{CandidateRecord, Planner};
+use covmap_gain::{GAIN_TOLERANCE, ViewPoints};
 
 /// So many candidates are evaluated first; then all that may still be better. To evaluate a few
 /// more costs less than another turn.
@@ -18,8 +18,8 @@ impl Planner {
     /// gain. So whatever is close to the best by less than what the fast gains are off is evaluated.
     pub(crate) fn fill_deciding_gains(&mut self, records: &mut [CandidateRecord]) {
         let all = self.view_points(records);
-        self.beams.refresh_bound(&mut self.cells, &all);
-        self.beams.take_exceeded();
+        self.gains.refresh_bounds(&all);
+        self.gains.take_exceeded();
         let largest = |records: &[CandidateRecord]| {
             GAIN_TOLERANCE * records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max)
         };
@@ -30,8 +30,8 @@ impl Planner {
         }
         let off = |records: &[CandidateRecord]| score.uncertainty(records, GAIN_TOLERANCE);
         self.settle(records, &all, REPORTED, |record| record.score, off);
-        if self.beams.take_exceeded() {
-            self.beams.refresh_gain(&mut self.cells, &all);
+        if self.gains.take_exceeded() {
+            self.gains.refresh_gains(&all);
             self.take_gains(records);
         }
     }
@@ -66,15 +66,15 @@ impl Planner {
         let mut wanted = ViewPoints::new(&self.grid);
         let indices = places.iter().filter_map(|i| self.grid.index(records[*i].cell));
         indices.for_each(|index| wanted.insert_group(all, index));
-        self.beams.refresh_gain(&mut self.cells, &wanted);
+        self.gains.refresh_gains(&wanted);
     }
 
     /// Fills in gains, or bounds, and scores. Returns which are gains.
     fn take_gains(&self, records: &mut [CandidateRecord]) -> Vec<bool> {
         let take = |record: &mut CandidateRecord| {
             let Some(index) = self.grid.index(record.cell) else { return true };
-            record.gain = self.beams.gain(index);
-            self.beams.is_exact(index)
+            record.gain = self.gains.gain(index);
+            self.gains.is_exact(index)
         };
         let is_exact = records.iter_mut().map(take).collect();
         self.score().apply(records);

@@ -2,6 +2,7 @@
 
 use crate::{Strategy, StrategyError};
 use covmap::short;
+use covmap_gain::{BeamError, RangePrediction, Upkeep};
 use serde::{Deserialize, Serialize};
 
 /// When a cell is given up whose entropy does not fall any longer.
@@ -97,17 +98,9 @@ pub enum PlannerError {
         /// Largest allowed value.
         max: f64,
     },
-    /// A beam covers more cells than the planner can number.
-    #[error(
-        "a beam covers {0} cells, 65535 are too many: use a coarser resolution, a shorter usable range or a narrower footprint"
-    )]
-    BeamTooFine(usize),
-    /// A beam reaches too far, in cells.
-    #[error(
-        "a beam reaches {0:.0} cells far, {most} are too many: use a coarser resolution or a shorter usable range",
-        most = crate::stencil::FARTHEST
-    )]
-    BeamTooLong(f64),
+    /// A beam covers too many cells.
+    #[error(transparent)]
+    Beam(#[from] BeamError),
     /// The strategy has an impossible number.
     #[error("planner.strategy: {0}")]
     Strategy(#[from] StrategyError),
@@ -158,6 +151,17 @@ impl PlannerParameters {
         within("unknown_reflection", self.unknown_reflection, 0.0, 1.0)?;
         within("uniform_share", self.uniform_share, 0.0, 1.0)?;
         within("passage_length", self.passage_length, 0.0, 100.0)
+    }
+
+    /// How ranges are predicted.
+    pub fn range_prediction(&self) -> RangePrediction {
+        let Self { unknown_reflection, uniform_share, .. } = *self;
+        RangePrediction { unknown_reflection, uniform_share }
+    }
+
+    /// Strategies that weigh gains keep them; the others report some few.
+    pub(crate) fn upkeep(&self) -> Upkeep {
+        if self.strategy.uses_gain() { Upkeep::Kept } else { Upkeep::OnDemand }
     }
 
     /// The longest passage that is tried, in cells; `None` if none is.

@@ -2,8 +2,8 @@
 
 use crate::planner::{Candidates, Planner};
 use crate::travel_costs;
-use crate::view_points::ViewPoints;
 use covmap::{Cell, Grid, Steps, neighbour, step_between};
+use covmap_gain::ViewPoints;
 
 /// A passage is worth trying if beyond it the robot could stand on so many times the area of
 /// its body, about a square metre: pockets behind bumps are not.
@@ -21,9 +21,9 @@ impl Planner {
         let is_cut_off = |i: usize| self.traversable.at(i) && here.cost(i).is_none();
         let mut wanted = ViewPoints::new(&self.grid);
         (0..self.grid.len()).filter(|i| is_cut_off(*i)).for_each(|i| wanted.insert(i));
-        self.beams.refresh_sight(&mut self.cells, &wanted);
+        self.gains.refresh_sight(&wanted);
         let is_candidate =
-            |i: usize| is_cut_off(i) && !self.measured.is_spent(i) && self.beams.has_reason(i);
+            |i: usize| is_cut_off(i) && !self.measured.is_spent(i) && self.gains.has_reason(i);
         let least = ROOM * self.traversable.body_cells();
         let rooms = regions(&steps, least, is_cut_off, is_candidate);
         let nearest = |only_untried: bool| {

@@ -1,28 +1,20 @@
 //! The planner: one owner of what is explored, what stalls, and what was computed before.
 
-use crate::beam_cache::BeamCache;
-use crate::cells::Cells;
 use crate::decision::{REPORTED, Score, best};
 use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
-use crate::onlookers::Mark;
-use crate::stencil::FARTHEST;
 use crate::traversable::Traversable;
-use crate::view_points::ViewPoints;
 use crate::window::Window;
 use crate::{
-    BodyEvidence, CandidateRecord, Decision, PlannerError, PlannerParameters, Scope, Stencil,
-    Strategy, TravelCosts, expected_information_gain, travel_costs,
+    BodyEvidence, CandidateRecord, Decision, PlannerError, PlannerParameters, Scope, Strategy,
+    TravelCosts, travel_costs,
 };
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
+use covmap_gain::{GAIN_TOLERANCE, GainCache, Stencil, ViewPoints, expected_information_gain};
 use covmap_model::{SensorModel, cells_under_body, intercepted};
 use covmap_sonar::Scan;
 use nalgebra::Point2;
 use rayon::prelude::*;
-
-/// The fast evaluation of E\[I\] is within this of the literal one, in units of the largest
-/// absolute gain that a decision evaluates; candidates closer to the best are decided by the latter.
-pub const GAIN_TOLERANCE: f64 = 1e-5;
 
 /// Chooses view-points by the strategies of section 4, and knows when all is explored.
 ///
@@ -42,13 +34,11 @@ pub const GAIN_TOLERANCE: f64 = 1e-5;
 pub struct Planner {
     parameters: PlannerParameters,
     model: SensorModel,
-    stencil: Stencil,
     pub(crate) grid: Grid,
     radius: f64,
-    pub(crate) cells: Cells,
     pub(crate) traversable: Traversable,
     pub(crate) exploration: Exploration,
-    pub(crate) beams: BeamCache,
+    pub(crate) gains: GainCache,
     pub(crate) measured: Measured,
     pub(crate) window: Option<Window>,
     /// The chosen view-point, and what was in sight of it when it was chosen.
@@ -82,19 +72,9 @@ impl Planner {
         parameters.validate()?;
         PlannerError::within("radius", radius, 0.0, 1e3)?;
         PlannerError::within("heading", heading, -1e9, 1e9)?;
-        let reach = model.max_reach() / model.resolution();
-        if reach > FARTHEST {
-            return Err(PlannerError::BeamTooLong(reach));
-        }
-        let stencil = Stencil::new(model, heading);
-        let most = stencil.beams.iter().map(|b| b.cells.len()).max().unwrap_or(0);
-        if most >= usize::from(u16::MAX) {
-            return Err(PlannerError::BeamTooFine(most));
-        }
         let grid = *outside.grid();
-        let bins = model.parameters().bins;
-        let cells = Cells::new(grid, bins, &stencil, parameters);
-        let beams = BeamCache::new(model, &stencil, &cells, grid, parameters);
+        let (prediction, upkeep) = (parameters.range_prediction(), parameters.upkeep());
+        let gains = GainCache::new(model, heading, grid, prediction, upkeep)?;
         let window = match parameters.strategy {
             Strategy::IgWin { radius } => Some(Window::new(grid, radius)),
             _ => None,
@@ -107,16 +87,14 @@ impl Planner {
             traversable: Traversable::new(grid, radius),
             parameters: parameters.clone(),
             model: model.clone(),
-            stencil,
             grid,
             radius,
-            cells,
-            beams,
+            gains,
             measured: Measured::new(grid, scan_spacing),
             window,
             target: None,
         };
-        if let Ok(unknown) = CoverageMap::new(grid, bins) {
+        if let Ok(unknown) = CoverageMap::new(grid, model.parameters().bins) {
             (0..grid.len()).for_each(|index| planner.update_limit(&unknown, index));
         }
         Ok(planner)
@@ -140,7 +118,7 @@ impl Planner {
             .iter()
             .filter(|(index, distance)| self.is_reason(*index, *distance))
             .map(|&(index, distance)| {
-                let before = self.cells.entropy(index);
+                let before = self.gains.entropy(index);
                 CountedScan { index, distance, before, after: before }
             })
             .collect();
@@ -150,7 +128,7 @@ impl Planner {
         self.take_over(map, changes);
         for (scan, weight) in expected.into_iter().zip(weights) {
             let touched = self.exploration.weight(scan.index) > weight;
-            let after = self.cells.entropy(scan.index);
+            let after = self.gains.entropy(scan.index);
             self.exploration.count(CountedScan { after, ..scan }, touched);
             self.update_limit(map, scan.index);
         }
@@ -198,10 +176,9 @@ impl Planner {
     }
 
     fn take_over(&mut self, map: &CoverageMap, changes: &[Change]) {
-        let with_gain = self.parameters.strategy.uses_gain();
         for change in changes {
             let Some(index) = self.grid.index(change.cell) else { continue };
-            let reflects_anew = self.cells.update(map, change.cell);
+            let reflects_anew = self.gains.update(map, change.cell);
             if reflects_anew {
                 let known = map.is_known(change.cell);
                 let free = map.mode(change.cell) <= self.parameters.traversable_coverage + 1e-9;
@@ -210,11 +187,6 @@ impl Planner {
                 if self.parameters.scope == Scope::Reachable {
                     opened_or_closed.into_iter().for_each(|i| self.update_limit(map, i));
                 }
-            }
-            if reflects_anew {
-                self.beams.mark(index, Mark::Sight);
-            } else if with_gain {
-                self.beams.mark(index, Mark::Gain);
             }
             self.update_limit(map, index);
         }
@@ -234,14 +206,12 @@ impl Planner {
         } else {
             0.0
         };
-        if self.cells.set_limit(index, limit) {
-            self.beams.mark(index, Mark::Limit);
-        }
+        self.gains.set_limit(index, limit);
     }
 
     /// Whether a cell is a reason to measure from so far away \[m\].
     pub(crate) fn is_reason(&self, index: usize, distance: f32) -> bool {
-        self.cells.is_reason(self.cells.bordered(index), distance)
+        self.gains.is_reason(index, distance)
     }
 
     /// V(l): the cells in sight of a view-point, by their row-major index, with their
@@ -249,8 +219,8 @@ impl Planner {
     /// total probability of at least ½.
     pub fn cells_in_sight(&mut self, view_point: Cell) -> Vec<(usize, f32)> {
         let Some(index) = self.grid.index(view_point) else { return Vec::new() };
-        self.beams.refresh_sight(&mut self.cells, &ViewPoints::one(&self.grid, index));
-        self.beams.cells_in_sight(index)
+        self.gains.refresh_sight(&ViewPoints::one(&self.grid, index));
+        self.gains.cells_in_sight(index)
     }
 
     /// L(c) and the ways there, for a robot in the cell `from`. Spent view-points are left
@@ -260,9 +230,9 @@ impl Planner {
         let costs = travel_costs(self.traversable.steps(), from);
         let mut reached = ViewPoints::new(&self.grid);
         costs.reached().for_each(|index| reached.insert(index));
-        self.beams.refresh_sight(&mut self.cells, &reached);
+        self.gains.refresh_sight(&reached);
         let trapped = costs.reached().all(|i| self.measured.is_near(i, from));
-        let mut indices = reached.indices(|group| self.beams.reasons(group));
+        let mut indices = self.gains.with_reason(&reached);
         indices.retain(|i| trapped || !self.measured.is_spent(*i));
         Candidates { indices, costs, passage: Vec::new() }
     }
@@ -287,17 +257,12 @@ impl Planner {
         set
     }
 
-    /// Fills in the gains of all records. A strategy without gains does not keep them up to
-    /// date, so they are forgotten first.
+    /// Fills in the gains of all records.
     fn fill_gains(&mut self, records: &mut [CandidateRecord]) {
-        if !self.parameters.strategy.uses_gain() {
-            let indices = records.iter().filter_map(|r| self.grid.index(r.cell));
-            indices.for_each(|index| self.beams.forget_gain(index));
-        }
         let wanted = self.view_points(records);
-        self.beams.refresh_gain(&mut self.cells, &wanted);
+        self.gains.refresh_gains(&wanted);
         for record in records {
-            record.gain = self.grid.index(record.cell).map_or(0.0, |index| self.beams.gain(index));
+            record.gain = self.grid.index(record.cell).map_or(0.0, |index| self.gains.gain(index));
         }
     }
 
@@ -402,10 +367,11 @@ impl Planner {
         // Eq. (16) divides by the largest gain, so that one must be exact as well.
         let largest = records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
         let near_max = top(|r| r.gain, records) - 2.0 * GAIN_TOLERANCE * largest;
-        let (model, stencil, parameters) = (&self.model, &self.stencil, &self.parameters);
+        let (model, stencil) = (&self.model, self.stencil());
+        let prediction = self.parameters.range_prediction();
         let doubtful = records.par_iter_mut().filter(|r| contends(r) || r.gain >= near_max);
         doubtful.for_each(|r| {
-            r.gain = expected_information_gain(map, model, stencil, parameters, r.cell);
+            r.gain = expected_information_gain(map, model, stencil, prediction, r.cell);
         });
         score.apply(records);
         contenders
@@ -466,12 +432,12 @@ impl Planner {
         let is_open = |&(index, distance): &(usize, f32)| {
             self.is_reason(index, distance) && window.holds(index)
         };
-        window.holds(candidate) && self.beams.sees(candidate, is_open)
+        window.holds(candidate) && self.gains.sees(candidate, is_open)
     }
 
     /// The cells around a view-point, as the planner's beams see them.
     pub fn stencil(&self) -> &Stencil {
-        &self.stencil
+        self.gains.stencil()
     }
 
     /// The parameters.

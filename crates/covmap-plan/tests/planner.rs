@@ -2,14 +2,12 @@
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
 use covmap::{Cell, CoverageMap, Grid, Raster};
+use covmap_gain::{BeamError, GAIN_TOLERANCE, Stencil, expected_information_gain};
 use covmap_model::{
     FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel, integrate,
     integrate_body,
 };
-use covmap_plan::{
-    CellStatus, GAIN_TOLERANCE, Planner, PlannerError, PlannerParameters, Stencil, Strategy,
-    expected_information_gain,
-};
+use covmap_plan::{CellStatus, Planner, PlannerError, PlannerParameters, Strategy};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
 use proptest::prelude::*;
@@ -139,8 +137,8 @@ fn check_gains(s: &mut Setting, stencil: &Stencil, from: Cell) -> Result<(), Tes
     let table = s.planner.candidate_table(from);
     let largest = table.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
     for record in table.iter().step_by(7) {
-        let exact =
-            expected_information_gain(&s.map, &s.model, stencil, &s.parameters, record.cell);
+        let prediction = s.parameters.range_prediction();
+        let exact = expected_information_gain(&s.map, &s.model, stencil, prediction, record.cell);
         prop_assert!(
             (record.gain - exact).abs() <= GAIN_TOLERANCE * largest,
             "{:?}: {} is not {}",
@@ -396,8 +394,12 @@ fn beams_of_too_many_cells_are_refused() {
         let parameters = PlannerParameters::standard();
         Planner::new(&parameters, &model, &outside, RADIUS, 0.0).map(|_| ()).unwrap_err()
     };
-    assert!(matches!(planner(0.001), PlannerError::BeamTooLong(cells) if cells > 3000.0));
-    assert!(matches!(planner(0.0035), PlannerError::BeamTooFine(cells) if cells > 65_534));
+    assert!(
+        matches!(planner(0.001), PlannerError::Beam(BeamError::TooLong(cells)) if cells > 3000.0)
+    );
+    assert!(
+        matches!(planner(0.0035), PlannerError::Beam(BeamError::TooFine(cells)) if cells > 65_534)
+    );
 }
 
 #[test]
@@ -418,7 +420,8 @@ fn absurd_arguments_are_answered() {
     }
     let far = Cell::new(i32::MAX, i32::MIN);
     let stencil = Stencil::new(&model, 0.0);
-    assert_eq!(expected_information_gain(&map, &model, &stencil, &parameters, far), 0.0);
+    let prediction = parameters.range_prediction();
+    assert_eq!(expected_information_gain(&map, &model, &stencil, prediction, far), 0.0);
     let grid = *map.grid();
     let steps = covmap::Steps::between(&grid, |_| true);
     let costs = covmap_plan::travel_costs(steps, Cell::new(0, 0));

@@ -257,7 +257,7 @@ fn what_is_not_there_is_missed() {
         assert_eq!(found(path), Ok(Found::Public), "{path}");
     }
     for path in
-        ["covmap_plan::strategy", "covmap_plan::gain::bound", "covmap_plan::decision::Score"]
+        ["covmap_plan::strategy", "covmap_gain::product::bound", "covmap_plan::decision::Score"]
     {
         assert_eq!(found(path), Ok(Found::Private), "{path}");
     }
@@ -267,15 +267,16 @@ fn what_is_not_there_is_missed() {
         "covmap_plan::Strategy::IgCL",
         "covmap_plan::Strategy::valid",
         "covmap_plan::Planner::take_over",
-        "covmap_plan::gain::bounds",
-        "covmap_plan::gain::bound::NoSuchThing",
+        "covmap_gain::product::bounds",
+        "covmap_gain::product::bound::NoSuchThing",
         "covmap_io::log::Fields",
     ] {
         assert!(found(path).is_err(), "{path}");
     }
     let text =
-        "`covmap::{Cell, Grid}`, *`covmap_plan::gain`* and x_covmap_plan::y, covmap-io, covmap";
+        "`covmap::{Cell, Grid}`, *`covmap_plan::window`* and x_covmap_plan::y, covmap-io, covmap";
     let path = |path: &str, italic| Named { path: parts(path), italic };
-    let expected = [("covmap::Cell", false), ("covmap::Grid", false), ("covmap_plan::gain", true)];
+    let expected =
+        [("covmap::Cell", false), ("covmap::Grid", false), ("covmap_plan::window", true)];
     assert_eq!(named(text), expected.map(|(name, italic)| path(name, italic)));
 }

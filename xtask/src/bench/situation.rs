@@ -4,8 +4,9 @@ use super::clock::Clock;
 use anyhow::{Context, Result};
 use covmap::{Cell, CoverageMap, Grid};
 use covmap_explore::{Config, Mission, Robot, Run, SimulatedRobot};
+use covmap_gain::{Stencil, expected_information_gain};
 use covmap_model::{SensorModel, integrate, integrate_body};
-use covmap_plan::{Decision, Planner, Stencil, expected_information_gain};
+use covmap_plan::{Decision, Planner};
 use covmap_sonar::Scan;
 use covmap_world::{Drive, World};
 use nalgebra::{Isometry2, Point2};
@@ -95,8 +96,8 @@ impl<'a> Situation<'a> {
 
     /// E\[I\] of a view-point by the equations as printed.
     pub(super) fn literal_gain(&self, view_point: Cell) -> f64 {
-        let parameters = &self.config.planner;
-        expected_information_gain(&self.map, &self.model, &self.stencil, parameters, view_point)
+        let prediction = self.config.planner.range_prediction();
+        expected_information_gain(&self.map, &self.model, &self.stencil, prediction, view_point)
     }
 
     fn stand(&mut self, cell: Cell) {

@@ -13,7 +13,6 @@ const NOWHERE: Point2<f64> = Point2::new(-1e3, -1e3);
 #[derive(Clone)]
 pub(crate) struct Corridor {
     pub(crate) map: CoverageMap,
-    pub(crate) model: SensorModel,
     pub(crate) planner: Planner,
     beams: usize,
 }
@@ -78,7 +77,7 @@ impl Corridor {
         let outside = Raster::from_fn(grid, |cell| outside(cell.x));
         let planner = Planner::new(parameters, &model, &outside, radius, 0.0).unwrap();
         let map = CoverageMap::new(grid, model.parameters().bins).unwrap();
-        Self { map, model, planner, beams: directions.len() }
+        Self { map, planner, beams: directions.len() }
     }
 
     /// Gives a cell a posterior; returns the change, which nobody is told of yet.

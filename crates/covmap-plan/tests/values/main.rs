@@ -1,14 +1,11 @@
-//! Values worked out by hand, or by a few lines of Python, with their derivation: the fast and the
-//! literal formulas share code, and would be wrong alike. And the rules of the planner, one by one,
-//! in a corridor that is one cell wide.
+//! The rules of the planner, one by one, in a corridor that is one cell wide, and values worked out
+//! by hand, with their derivation.
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
 mod certificates;
 mod corridor;
 mod counting;
 mod decisions;
-mod gains;
-mod likelihoods;
 mod passages;
 mod stalls;
 mod travel;

@@ -1,13 +1,13 @@
 //! p(d | c), the weights of a ring, and V(l) in numbers.
 
-use super::corridor::{Corridor, plain};
+use super::corridor::{Corridor, PLAIN};
 use super::{all_close, close};
-use covmap::{Cell, CoverageMap, Grid, Raster};
-use covmap_model::{FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel};
-use covmap_plan::{
-    BeamStencil, Planner, RangeLikelihood, Stencil, StencilCell, Strategy, range_likelihood,
-    reflection,
+use covmap::{Cell, CoverageMap, Grid};
+use covmap_gain::{
+    BeamStencil, GainCache, RangeLikelihood, Stencil, StencilCell, Upkeep, ViewPoints,
+    range_likelihood, reflection,
 };
+use covmap_model::{FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel};
 use covmap_sonar::{Beam, SonarRing};
 use nalgebra::{Isometry2, Point2};
 
@@ -126,10 +126,19 @@ fn what_reflects_is_the_most_likely_coverage() {
 
 /// Five cells of eleven bins, and a ray of 4 m to the right, or of `no_echo` [m] without an echo.
 fn corridor(no_echo: f64) -> Corridor {
-    let mut model = super::corridor::two_bins(4.0);
-    model.no_echo.range = no_echo;
-    (model.bins, model.sigma_out.base, model.sigma_in) = (11, 0.1, 0.2);
-    Corridor::new(5, &[0.0], &model, &plain(Strategy::Cl))
+    let constant = |base| Linear { base, per_cell_distance: 0.0, per_range: 0.0 };
+    let model = ModelParameters {
+        bins: 11,
+        usable_range: 4.0,
+        sigma_out: constant(0.1),
+        sigma_in: 0.2,
+        gamma: constant(0.1),
+        behind: 0.0,
+        no_echo: NoEchoParameters { range: no_echo, gamma: 0.2 },
+        tempering: 1.0,
+        footprint: FootprintRule::Cones { half_angle: 0.0 },
+    };
+    Corridor::new(5, &[0.0], &model, PLAIN, Upkeep::OnDemand)
 }
 
 /// Almost sure of one bin.
@@ -138,7 +147,7 @@ fn posterior(bin: usize) -> Vec<f64> {
 }
 
 #[test]
-fn the_planner_sees_through_what_reflects_up_to_one_half() {
+fn the_cache_sees_through_what_reflects_up_to_one_half() {
     // The cell 2 m ahead reflects .5, .6 or .7: beyond it .5, .4 or .3 of all outcomes are left.
     for (bin, farthest) in [(5, 4), (6, 2), (7, 2)] {
         let mut corridor = corridor(4.0);
@@ -155,7 +164,7 @@ fn the_planner_sees_through_what_reflects_up_to_one_half() {
 }
 
 #[test]
-fn the_planner_sees_without_an_echo_as_far_as_that_reaches() {
+fn the_cache_sees_without_an_echo_as_far_as_that_reaches() {
     // As in `no_echo_sees_as_far_as_it_reaches`, an echo from k m covers k cells.
     let in_sight = |no_echo, bins: &[(i32, usize)]| {
         let mut corridor = corridor(no_echo);
@@ -169,7 +178,7 @@ fn the_planner_sees_without_an_echo_as_far_as_that_reaches() {
 }
 
 #[test]
-fn the_planner_weighs_the_cells_of_a_ring_by_their_angular_width() {
+fn the_cache_weighs_the_cells_of_a_ring_by_their_angular_width() {
     // Of the first ring, (1, 0) and (1, −1), one cell is a wall: .585786 or .414214 of the beam
     // are hidden, which of equal weights would be ½.
     let (parameters, stencil_ring) = four_beams();
@@ -177,14 +186,13 @@ fn the_planner_weighs_the_cells_of_a_ring_by_their_angular_width() {
     let in_sight = |wall: (i32, i32)| {
         let grid = Grid::new(Point2::origin(), 1.0, 9, 9).unwrap();
         let mut map = CoverageMap::new(grid, 11).unwrap();
-        let outside = Raster::filled(grid, false);
-        let plain = plain(Strategy::Cl);
-        let mut planner = Planner::new(&plain, &model, &outside, 0.3, 0.0).unwrap();
-        let change = map.multiply(Cell::new(4, 4).offset(wall.0, wall.1), &posterior(10));
-        let far = Point2::new(-99.0, -99.0);
-        planner.body_moved(&map, far, far, change.as_slice());
-        let beyond = grid.index(Cell::new(6, 4)).unwrap();
-        planner.cells_in_sight(Cell::new(4, 4)).iter().any(|(index, _)| *index == beyond)
+        let mut cache = GainCache::new(&model, 0.0, grid, PLAIN, Upkeep::OnDemand).unwrap();
+        let wall = Cell::new(4, 4).offset(wall.0, wall.1);
+        map.multiply(wall, &posterior(10));
+        cache.update(&map, wall);
+        let [here, beyond] = [(4, 4), (6, 4)].map(|(x, y)| grid.index(Cell::new(x, y)).unwrap());
+        cache.refresh_sight(&ViewPoints::one(&grid, here));
+        cache.sees(here, |(index, _)| *index == beyond)
     };
     assert_eq!([(1, 0), (1, -1)].map(in_sight), [false, true]);
 }

@@ -6,10 +6,10 @@
 //! in front, 9 behind, and one. These are evaluated when a cell changes, and kept; a mixture of them
 //! takes a fifth of the time that an evaluation does.
 
-use super::evidence::{Evidence, Prior, Reading, to_f32};
+use super::evidence::{Evidence, Reading, to_f32};
 use super::interpolation::Probes;
 use super::span::Span;
-use crate::cells::Cells;
+use crate::belief::{Cells, Prior};
 use covmap::lanes::{LANES, Lanes};
 use pulp::Arch;
 use rayon::prelude::*;
@@ -33,7 +33,7 @@ pub(crate) enum Imagined {
 }
 
 /// Many readings as mixtures of a part of the basis, to be taken one after the other.
-pub(super) struct Mixtures {
+pub(crate) struct Mixtures {
     first: usize,
     /// For each reading the weight of every member.
     weights: Vec<Vec<f64>>,
@@ -52,7 +52,7 @@ pub(crate) struct Basis {
 
 impl Basis {
     /// Takes some of these readings into the basis, as many as all of them need.
-    pub(super) fn extend(&mut self, readings: &[&Evidence], probes: &Probes) -> Mixtures {
+    pub(crate) fn extend(&mut self, readings: &[&Evidence], probes: &Probes) -> Mixtures {
         let gains = probes.in_tolerances(readings);
         let Span { members, weights } = Span::of(&gains, SHARE);
         let first = self.readings.len();
@@ -61,7 +61,7 @@ impl Basis {
     }
 
     /// The same, unless it takes more than `most`. Some of the readings tell.
-    pub(super) fn extend_by_few(
+    pub(crate) fn extend_by_few(
         &mut self,
         readings: &[&Evidence],
         probes: &Probes,
@@ -74,7 +74,7 @@ impl Basis {
     }
 
     /// Makes room for the gains of so many blocks of cells.
-    pub(super) fn make_room(&mut self, blocks: usize) {
+    pub(crate) fn make_room(&mut self, blocks: usize) {
         self.gains = vec![[0.0; LANES]; blocks * self.readings.len()];
     }
 
@@ -92,7 +92,7 @@ impl Basis {
                     || {
                         let prior = cells.block(*block);
                         let all = gains.iter_mut().zip(readings.iter());
-                        all.for_each(|(gain, reading)| *gain = prior.gain(reading));
+                        all.for_each(|(gain, reading)| *gain = reading.gain(&prior));
                     },
                 );
             }
@@ -101,9 +101,9 @@ impl Basis {
 
     /// The gain of a reading in every cell of a block.
     #[inline(always)]
-    pub(super) fn gain(&self, reading: &Imagined, prior: &Prior<'_>, block: usize) -> Lanes {
+    pub(crate) fn gain(&self, reading: &Imagined, prior: &Prior<'_>, block: usize) -> Lanes {
         match reading {
-            Imagined::Evaluated(reading) => prior.gain(reading),
+            Imagined::Evaluated(reading) => reading.gain(prior),
             Imagined::Mixed { first, weights } => {
                 let mut gain = [0.0; LANES];
                 for (gains, weight) in
@@ -121,25 +121,25 @@ impl Basis {
 
 impl Mixtures {
     /// The places of the next so many readings.
-    pub(super) fn take(&mut self, count: usize) -> Range<usize> {
+    pub(crate) fn take(&mut self, count: usize) -> Range<usize> {
         self.taken += count;
         self.taken - count..self.taken
     }
 
     /// The next reading.
-    pub(super) fn mix_next(&mut self) -> Imagined {
+    pub(crate) fn mix_next(&mut self) -> Imagined {
         let place = self.take(1).start;
         self.sum(&[(1.0, place)])
     }
 
     /// The gains of all probes by a sum of readings, each times a factor, in units of what they
     /// may be off.
-    pub(super) fn gains(&self, terms: &[(f64, usize)]) -> Vec<f64> {
+    pub(crate) fn gains(&self, terms: &[(f64, usize)]) -> Vec<f64> {
         sum(&self.gains, terms)
     }
 
     /// A sum of readings, each times a factor.
-    pub(super) fn sum(&self, terms: &[(f64, usize)]) -> Imagined {
+    pub(crate) fn sum(&self, terms: &[(f64, usize)]) -> Imagined {
         let weights = sum(&self.weights, terms).into_iter().map(to_f32).collect();
         Imagined::Mixed { first: self.first, weights }
     }

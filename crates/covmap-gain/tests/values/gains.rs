@@ -28,10 +28,9 @@
 //! ```
 
 use super::close;
-use super::corridor::{Corridor, plain};
-use covmap::Cell;
+use super::corridor::{Corridor, PLAIN};
+use covmap_gain::{RangePrediction, Upkeep};
 use covmap_model::{FootprintRule, Linear, ModelParameters, NoEchoParameters};
-use covmap_plan::{PlannerParameters, Strategy, expected_information_gain};
 
 fn model() -> ModelParameters {
     ModelParameters {
@@ -53,48 +52,42 @@ fn posteriors(corridor: &mut Corridor) {
     corridor.know(4, &[0.2, 0.5, 0.3]);
 }
 
-/// E[I] of the robot's cell by the literal equations and by the planner.
+/// E[I] of the robot's cell by the literal equations and by the cache.
 #[track_caller]
 fn check(
     directions: &[f64],
-    change: impl Fn(&mut PlannerParameters),
+    prediction: RangePrediction,
     tell: impl Fn(&mut Corridor),
     expected: f64,
 ) {
-    for strategy in [Strategy::Ig, Strategy::Cl] {
-        let mut parameters = plain(strategy);
-        change(&mut parameters);
-        let mut corridor = Corridor::new(5, directions, &model(), &parameters);
+    for upkeep in [Upkeep::Kept, Upkeep::OnDemand] {
+        let mut corridor = Corridor::new(5, directions, &model(), prediction, upkeep);
         tell(&mut corridor);
-        let (map, here) = (&corridor.map, Cell::new(2, 0));
-        let stencil = corridor.planner.stencil();
-        let literal = expected_information_gain(map, &corridor.model, stencil, &parameters, here);
-        close(literal, expected, 1e-6);
-        let table = corridor.planner.candidate_table(here);
-        let record = table.iter().find(|record| record.cell == here).unwrap();
-        close(record.gain, expected, 1e-5);
+        close(corridor.literal_gain(2), expected, 1e-6);
+        close(corridor.gain(2), expected, 1e-5);
     }
 }
 
 #[test]
 fn the_expected_gain_weighs_every_outcome_by_its_likelihood() {
     // Cell 4 answers with ½: ½ (.320093 + .047961) + ½ (.112740 − .017216).
-    check(&[0.0], |_| (), posteriors, 0.231_789_17);
+    check(&[0.0], PLAIN, posteriors, 0.231_789_17);
 }
 
 #[test]
 fn the_expected_gain_is_the_mean_over_all_beams() {
     // To the left 1 m is sure: −.040143. ½ (.231789 − .040143)
-    check(&[0.0, 180.0], |_| (), posteriors, 0.095_823_30);
+    check(&[0.0, 180.0], PLAIN, posteriors, 0.095_823_30);
     // A third ray, to the side, leaves the grid and gains nothing.
-    check(&[0.0, 90.0, 180.0], |_| (), posteriors, 2.0 / 3.0 * 0.095_823_30);
+    check(&[0.0, 90.0, 180.0], PLAIN, posteriors, 2.0 / 3.0 * 0.095_823_30);
 }
 
 #[test]
 fn a_uniform_share_makes_every_outcome_possible() {
     // η = .4 over 0 m, 1 m, 2 m and ∅: .1 each, and .6 of what it was; the unknown cell 0 counts.
     // To the right .180325, to the left −.064316.
-    check(&[0.0, 180.0], |p| p.uniform_share = 0.4, posteriors, 0.058_004_47);
+    let prediction = RangePrediction { uniform_share: 0.4, ..PLAIN };
+    check(&[0.0, 180.0], prediction, posteriors, 0.058_004_47);
 }
 
 #[test]
@@ -105,17 +98,16 @@ fn unknown_cells_reflect_as_much_as_they_are_said_to() {
         corridor.know(3, &[0.8, 0.15, 0.05]);
         corridor.know(4, &[0.2, 0.5, 0.3]);
     };
-    check(&[0.0, 180.0], |p| p.unknown_reflection = 0.3, tell, 0.154_345_70);
+    let prediction = RangePrediction { unknown_reflection: 0.3, ..PLAIN };
+    check(&[0.0, 180.0], prediction, tell, 0.154_345_70);
 }
 
 #[test]
 fn nothing_is_gained_in_a_pinned_cell() {
     let tell = |corridor: &mut Corridor| {
         posteriors(corridor);
-        let change = corridor.map.pin_free(Cell::new(3, 0));
-        let far = nalgebra::Point2::new(-9.0, -9.0);
-        corridor.planner.body_moved(&corridor.map, far, far, change.as_slice());
+        corridor.pin(3);
     };
     // ½ (.047961 − .017216)
-    check(&[0.0], |_| (), tell, 0.015_372_55);
+    check(&[0.0], PLAIN, tell, 0.015_372_55);
 }

@@ -1,21 +1,8 @@
 //! E\[I(l)\]: how much a view-point is expected to tell. Eq. (13) and (14).
 //!
-//! This file is the equations as printed, in f64: the oracle. [`sweep`] holds what runs.
+//! This file is the equations as printed, in f64: the oracle. [`crate::product`] holds what runs.
 
-mod asks;
-mod basis;
-pub(crate) mod bound;
-pub(crate) mod evidence;
-mod front;
-mod interpolation;
-mod rings;
-mod span;
-mod sums;
-pub(crate) mod sweep;
-
-use crate::{
-    BeamStencil, PlannerParameters, RangeLikelihood, Stencil, range_likelihood, reflection,
-};
+use crate::{BeamStencil, RangeLikelihood, RangePrediction, Stencil, range_likelihood, reflection};
 use covmap::{Cell, CoverageMap, Histogram, product};
 use covmap_model::{Outcome, SensorModel};
 
@@ -31,10 +18,10 @@ pub fn expected_information_gain(
     map: &CoverageMap,
     model: &SensorModel,
     stencil: &Stencil,
-    parameters: &PlannerParameters,
+    prediction: RangePrediction,
     view_point: Cell,
 ) -> f64 {
-    let gain = |beam| beam_gain(map, model, stencil, beam, parameters, view_point);
+    let gain = |beam| beam_gain(map, model, stencil, beam, prediction, view_point);
     let sum: f64 = stencil.beams.iter().map(gain).sum();
     #[allow(clippy::cast_precision_loss, reason = "few beams")]
     let beams = stencil.beams.len() as f64;
@@ -46,13 +33,13 @@ fn beam_gain(
     model: &SensorModel,
     stencil: &Stencil,
     beam: &BeamStencil,
-    parameters: &PlannerParameters,
+    prediction: RangePrediction,
     view_point: Cell,
 ) -> f64 {
     let cell = |i: usize| view_point.offset(beam.cells[i].dx, beam.cells[i].dy);
     let mut likelihood = RangeLikelihood::default();
-    let rho = |i| reflection(map, cell(i), parameters.unknown_reflection);
-    range_likelihood(beam, parameters.uniform_share, rho, &mut likelihood);
+    let rho = |i| reflection(map, cell(i), prediction.unknown_reflection);
+    range_likelihood(beam, prediction.uniform_share, rho, &mut likelihood);
     let mut expected = 0.0;
     for k in 0..stencil.outcomes() {
         let p = likelihood.probability(k);

@@ -2,7 +2,7 @@
 #![allow(clippy::cast_precision_loss, reason = "tests count few")]
 
 use super::*;
-use covmap::{CoverageMap, Raster};
+use covmap::Raster;
 use covmap_model::{ModelParameters, integrate};
 use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -19,15 +19,24 @@ fn kinds() -> Vec<Arch> {
     kinds
 }
 
+/// A cache that knows nothing yet.
+fn kept(model: &SensorModel, grid: Grid) -> GainCache {
+    let prediction = RangePrediction { unknown_reflection: 0.0, uniform_share: 0.0 };
+    GainCache::new(model, 0.1, grid, prediction, Upkeep::Kept).unwrap()
+}
+
+/// Takes over a cell, and forgets all that may depend on it.
+fn see(cache: &mut GainCache, map: &CoverageMap, cell: Cell) {
+    cache.update(map, cell);
+    cache.onlookers.mark(cache.grid.index(cell).unwrap(), Mark::Sight);
+}
+
 /// All that is kept after some scans, with one kind of registers.
 fn values(arch: Arch) -> (Vec<u64>, Vec<[u16; LANES]>, Vec<u16>) {
-    let parameters = PlannerParameters::standard();
     let model = SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), 0.1).unwrap();
     let grid = Grid::new(Point2::new(-2.0, -2.0), 0.1, 43, 37).unwrap();
-    let stencil = Stencil::new(&model, 0.1);
     let mut map = CoverageMap::new(grid, 11).unwrap();
-    let mut cells = Cells::new(grid, 11, &stencil, &parameters);
-    let mut cache = BeamCache::new(&model, &stencil, &cells, grid, &parameters);
+    let mut cache = kept(&model, grid);
     cache.arch = arch;
     let all = Raster::filled(grid, ());
     let mut wanted = ViewPoints::new(&grid);
@@ -37,32 +46,23 @@ fn values(arch: Arch) -> (Vec<u64>, Vec<[u16; LANES]>, Vec<u16>) {
         let range = |i| Range::Echo(0.5 + 0.07 * f64::from((i * 7 + turn) % 24));
         let scan = Scan { pose, time: 0.0, ranges: (0..24).map(range).collect() };
         for change in integrate(&model, &mut map, &scan) {
-            let index = grid.index(change.cell).unwrap();
-            cells.update(&map, change.cell);
-            cells.set_limit(index, 1.0);
-            cache.mark(index, Mark::Sight);
+            see(&mut cache, &map, change.cell);
+            cache.set_limit(grid.index(change.cell).unwrap(), 1.0);
         }
-        cache.refresh_gain(&mut cells, &wanted);
+        cache.refresh_gains(&wanted);
     }
     let gains = (0..grid.len()).map(|index| cache.gain(index).to_bits()).collect();
-    let reasons = (0..cache.groups.len()).map(|group| cache.reasons(group)).collect();
+    let reasons = cache.groups.iter().map(|group| group.has_reason).collect();
     (gains, cache.in_sight, reasons)
 }
 
 #[test]
 fn gains_that_are_kept_are_those_of_a_fresh_cache() {
-    let parameters = PlannerParameters::standard();
     let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1).unwrap();
-    let stencil = Stencil::new(&model, 0.1);
     for (width, height) in [(1, 1), (1, 20), (17, 3), (43, 90)] {
         let grid = Grid::new(Point2::new(-0.05, -0.05), 0.1, width, height).unwrap();
-        let fresh = || {
-            let cells = Cells::new(grid, 11, &stencil, &parameters);
-            let cache = BeamCache::new(&model, &stencil, &cells, grid, &parameters);
-            (cells, cache)
-        };
         let mut map = CoverageMap::new(grid, 11).unwrap();
-        let (mut cells, mut cache) = fresh();
+        let mut cache = kept(&model, grid);
         let last = height - 1;
         // Rows that were outside of what is worked at are inside later, and back.
         for (turn, rows) in
@@ -74,19 +74,18 @@ fn gains_that_are_kept_are_those_of_a_fresh_cache() {
             let range = |i: usize| Range::Echo(0.5 + 0.07 * ((i * 7 + turn) % 24) as f64);
             let scan = Scan { pose, time: 0.0, ranges: (0..24).map(range).collect() };
             for change in integrate(&model, &mut map, &scan) {
-                cells.update(&map, change.cell);
-                cache.mark(grid.index(change.cell).unwrap(), Mark::Sight);
+                see(&mut cache, &map, change.cell);
             }
             let mut wanted = ViewPoints::new(&grid);
             (rows.start * width..rows.end * width).for_each(|index| wanted.insert(index));
-            cache.refresh_gain(&mut cells, &wanted);
-            let (mut fresh_cells, mut fresh_cache) = fresh();
+            cache.refresh_gains(&wanted);
+            let mut fresh = kept(&model, grid);
             for cell in grid.cells() {
-                fresh_cells.update(&map, cell);
+                fresh.update(&map, cell);
             }
-            fresh_cache.refresh_gain(&mut fresh_cells, &wanted);
+            fresh.refresh_gains(&wanted);
             for index in rows.start * width..rows.end * width {
-                assert_eq!(cache.gain(index).to_bits(), fresh_cache.gain(index).to_bits());
+                assert_eq!(cache.gain(index).to_bits(), fresh.gain(index).to_bits());
             }
         }
     }
@@ -94,14 +93,11 @@ fn gains_that_are_kept_are_those_of_a_fresh_cache() {
 
 #[test]
 fn no_gain_exceeds_its_bound() {
-    let parameters = PlannerParameters::standard();
     for model in [ModelParameters::b21r(), ModelParameters::by_hand()] {
         let model = SensorModel::new(&model, &SonarRing::b21r(), 0.1).unwrap();
         let grid = Grid::new(Point2::new(-2.0, -2.0), 0.1, 43, 37).unwrap();
-        let stencil = Stencil::new(&model, 0.1);
         let mut map = CoverageMap::new(grid, 11).unwrap();
-        let mut cells = Cells::new(grid, 11, &stencil, &parameters);
-        let mut cache = BeamCache::new(&model, &stencil, &cells, grid, &parameters);
+        let mut cache = kept(&model, grid);
         let mut wanted = ViewPoints::new(&grid);
         (0..grid.len()).for_each(|index| wanted.insert(index));
         let (mut loose, mut all) = (0.0, 0.0);
@@ -110,15 +106,14 @@ fn no_gain_exceeds_its_bound() {
             let range = |i: u32| Range::Echo(0.5 + 0.07 * f64::from((i * 7 + turn) % 24));
             let scan = Scan { pose, time: 0.0, ranges: (0..24).map(range).collect() };
             for change in integrate(&model, &mut map, &scan) {
-                cells.update(&map, change.cell);
-                cache.mark(grid.index(change.cell).unwrap(), Mark::Sight);
+                see(&mut cache, &map, change.cell);
             }
-            cache.refresh_bound(&mut cells, &wanted);
+            cache.refresh_bounds(&wanted);
             let bounds: Vec<f64> = (0..grid.len()).map(|index| cache.gain(index)).collect();
             let bounded = |index: &usize| !cache.is_exact(*index);
             let bounded: Vec<usize> = (0..grid.len()).filter(bounded).collect();
             assert!(!bounded.is_empty());
-            cache.refresh_gain(&mut cells, &wanted);
+            cache.refresh_gains(&wanted);
             for index in bounded {
                 assert!(cache.is_exact(index) && cache.gain(index) <= bounds[index]);
                 loose += bounds[index] - cache.gain(index);

@@ -10,6 +10,7 @@
 //! so that no product is normalised, one logarithm is enough, and nothing large cancels: weak
 //! evidence (small e) has small terms only.
 
+use crate::belief::Prior;
 use covmap::lanes::{LANES, Lanes, ln};
 use covmap_model::{Outcome, SensorModel};
 
@@ -63,24 +64,13 @@ impl Evidence {
     }
 }
 
-/// The histograms of a block of cells.
-pub(crate) struct Prior<'a> {
-    /// h of every bin.
-    pub(crate) h: &'a [Lanes],
-    /// ĥ of every bin.
-    pub(crate) tilt: &'a [Lanes],
-    /// 1 for a cell that a measurement can change, else 0.
-    pub(crate) changeable: &'a Lanes,
-}
-
-impl Prior<'_> {
-    /// The information gain of a reading in every cell, Eq. (13) \[nats\]: 0 where nothing can
-    /// change.
+impl Reading {
+    /// The information gain in every cell of a block, Eq. (13) \[nats\]: 0 where nothing can change.
     #[inline(always)]
-    pub(crate) fn gain(&self, reading: &Reading) -> Lanes {
+    pub(crate) fn gain(&self, prior: &Prior<'_>) -> Lanes {
         let (mut above, mut sum) = ([0.0f32; LANES], [0.0f32; LANES]);
-        let rows = self.h[reading.first..].iter().zip(&self.tilt[reading.first..]);
-        for ((h, tilt), (e, w)) in rows.zip(&reading.terms) {
+        let rows = prior.h[self.first..].iter().zip(&prior.tilt[self.first..]);
+        for ((h, tilt), (e, w)) in rows.zip(&self.terms) {
             for lane in 0..LANES {
                 above[lane] += h[lane] * e;
                 sum[lane] += tilt[lane] * e + h[lane] * w;
@@ -94,7 +84,7 @@ impl Prior<'_> {
         for lane in 0..LANES {
             // E as it is in the logarithm, after rounding.
             let above = z[lane] - 1.0;
-            gain[lane] = self.changeable[lane] * ((sum[lane] + above) / z[lane] - log_z[lane]);
+            gain[lane] = prior.changeable[lane] * ((sum[lane] + above) / z[lane] - log_z[lane]);
         }
         gain
     }

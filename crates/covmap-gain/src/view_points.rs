@@ -6,30 +6,32 @@ use covmap::lanes::LANES;
 /// A set of view-points. Each row of the grid is cut into groups of [`LANES`] neighbours; a bit
 /// for each.
 #[derive(Debug, Clone)]
-pub(crate) struct ViewPoints {
+pub struct ViewPoints {
     width: usize,
     bits: Vec<u16>,
 }
 
 impl ViewPoints {
-    pub(crate) fn new(grid: &Grid) -> Self {
+    /// The empty set.
+    pub fn new(grid: &Grid) -> Self {
         Self { width: grid.width(), bits: vec![0; grid.height() * groups(grid)] }
     }
 
-    pub(crate) fn one(grid: &Grid, index: usize) -> Self {
+    /// One view-point, by its row-major index.
+    pub fn one(grid: &Grid, index: usize) -> Self {
         let mut set = Self::new(grid);
         set.insert(index);
         set
     }
 
     /// Adds a view-point by its row-major index.
-    pub(crate) fn insert(&mut self, index: usize) {
+    pub fn insert(&mut self, index: usize) {
         let (group, lane) = place(self.width, index);
         self.bits[group] |= 1 << lane;
     }
 
     /// Adds all view-points of another set that are in the same group as one of them.
-    pub(crate) fn insert_group(&mut self, of: &Self, index: usize) {
+    pub fn insert_group(&mut self, of: &Self, index: usize) {
         let (group, _) = place(self.width, index);
         self.bits[group] |= of.bits[group];
     }

@@ -1,9 +1,8 @@
 //! What the planner keeps of the map, laid out for the beams of many view-points.
 
-use crate::gain::evidence::Prior;
 use crate::memory::Size;
 use crate::view_points::{groups, place};
-use crate::{PlannerParameters, Stencil};
+use crate::{RangePrediction, Stencil};
 use covmap::lanes::{LANES, Lanes};
 use covmap::{Cell, CoverageMap, Grid, MAX_BINS, bin_coverage};
 
@@ -39,6 +38,16 @@ pub(crate) struct Cells {
     tilt: Vec<Lanes>,
 }
 
+/// The histograms of a block of cells.
+pub(crate) struct Prior<'a> {
+    /// h of every bin.
+    pub(crate) h: &'a [Lanes],
+    /// ĥ of every bin.
+    pub(crate) tilt: &'a [Lanes],
+    /// 1 for a cell that a measurement can change, else 0.
+    pub(crate) changeable: &'a Lanes,
+}
+
 /// Codes past the last bin.
 const UNKNOWN: usize = 0;
 const PINNED: usize = 1;
@@ -49,12 +58,12 @@ impl Cells {
         grid: Grid,
         bins: usize,
         stencil: &Stencil,
-        parameters: &PlannerParameters,
+        prediction: RangePrediction,
     ) -> Self {
         let border = usize::try_from(stencil.radius).unwrap_or(0);
         let bordered = (grid.width() + 2 * border) * (grid.height() + 2 * border);
         let mut reflection_of: Vec<f64> = (0..bins).map(|k| bin_coverage(k, bins)).collect();
-        reflection_of.extend([parameters.unknown_reflection, 0.0, 0.0]);
+        reflection_of.extend([prediction.unknown_reflection, 0.0, 0.0]);
         #[allow(clippy::cast_possible_truncation, reason = "at most 67 codes")]
         let outside = (bins + OUTSIDE) as u8;
         // Lanes past the last cell of a row read on.
@@ -221,10 +230,9 @@ mod tests {
         let stencil = Stencil::new(&model, 0.0);
         let grid = Grid::new(Point2::new(-2.0, -1.0), 0.1, 41, 23).unwrap();
         for unknown_reflection in [0.0, 0.3] {
-            let parameters =
-                PlannerParameters { unknown_reflection, ..PlannerParameters::standard() };
+            let prediction = RangePrediction { unknown_reflection, uniform_share: 0.0 };
             let mut map = CoverageMap::new(grid, 11).unwrap();
-            let mut cells = Cells::new(grid, 11, &stencil, &parameters);
+            let mut cells = Cells::new(grid, 11, &stencil, prediction);
             for turn in 0..6u32 {
                 let at = Vector2::new(0.3 * f64::from(turn) - 1.0, 0.0);
                 let range = |i: u32| Range::Echo(0.4 + 0.05 * f64::from((i * 7 + turn) % 24));

@@ -1,16 +1,16 @@
 //! A few of many vectors, of which all others are sums.
 
 /// Some of many vectors, and how nearly all are sums of these.
-pub(super) struct Span {
-    pub(super) members: Vec<usize>,
+pub(crate) struct Span {
+    pub(crate) members: Vec<usize>,
     /// For each vector the weight of every member.
-    pub(super) weights: Vec<Vec<f64>>,
+    pub(crate) weights: Vec<Vec<f64>>,
 }
 
 impl Span {
     /// As few vectors as leave no number of any farther off than the tolerance: one after the
     /// other that one joins which is farthest from what those before it span.
-    pub(super) fn of(vectors: &[Vec<f64>], tolerance: f64) -> Self {
+    pub(crate) fn of(vectors: &[Vec<f64>], tolerance: f64) -> Self {
         let mut rest = vectors.to_vec();
         let mut parts = vec![Vec::new(); vectors.len()];
         let mut members: Vec<usize> = Vec::new();

@@ -9,7 +9,7 @@ use super::basis::{Basis, Imagined, Mixtures};
 use super::evidence::{Evidence, to_f32};
 use super::front::{Front, Lattice};
 use super::interpolation::{Nodes, Probes};
-use crate::look_ahead::as_f64;
+use crate::sight::as_f64;
 use crate::{BeamStencil, Stencil};
 use covmap_model::{Linear, Outcome, SensorModel};
 use std::collections::BTreeSet;

@@ -4,7 +4,7 @@
 //! [`RangeLikelihood::cells_in_sight`](crate::RangeLikelihood::cells_in_sight), to the last bit.
 
 use crate::BeamStencil;
-use crate::cells::Cells;
+use crate::belief::Cells;
 use covmap::lanes::{LANES, Lanes};
 
 /// [`LANES`] probabilities.

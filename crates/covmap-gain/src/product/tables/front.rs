@@ -8,7 +8,7 @@
 use super::basis::{Imagined, Mixtures};
 use super::evidence::to_f32;
 use super::span::Span;
-use crate::look_ahead::as_f64;
+use crate::sight::as_f64;
 use covmap::lanes::TOGETHER;
 use std::f64::consts::PI;
 
@@ -29,22 +29,22 @@ pub(crate) struct Front {
 }
 
 /// The outcomes as they are interpolated: by some ranges and distances.
-pub(super) struct Lattice {
-    pub(super) first: usize,
+pub(crate) struct Lattice {
+    pub(crate) first: usize,
     /// For each outcome the weight of every range.
-    pub(super) of_outcomes: Vec<Vec<f64>>,
+    pub(crate) of_outcomes: Vec<Vec<f64>>,
     /// For each beam, for each of its cells, the weight of every distance.
-    pub(super) of_cells: Vec<Vec<Vec<f64>>>,
+    pub(crate) of_cells: Vec<Vec<Vec<f64>>>,
     /// How many distances.
-    pub(super) distances: usize,
+    pub(crate) distances: usize,
     /// What a gain may be off for each distance, in units of what an interpolated one may.
-    pub(super) tolerance: f64,
+    pub(crate) tolerance: f64,
 }
 
 impl Lattice {
     /// As few readings as allowed in place of the next ones of all in front, one for each range and
     /// distance. They are added to those of the ring.
-    pub(super) fn reduce(self, front: &mut Mixtures, readings: &mut Vec<Imagined>) -> Front {
+    pub(crate) fn reduce(self, front: &mut Mixtures, readings: &mut Vec<Imagined>) -> Front {
         let Self { first, of_outcomes, of_cells, distances, tolerance } = self;
         let base = readings.len();
         let ranges = of_outcomes.first().map_or(0, Vec::len);

@@ -44,9 +44,23 @@ pub struct Stencil {
     pub radius: i32,
 }
 
-/// A planner refuses beams of more cells than this from end to end: two hundred metres in cells of
-/// 0.1 m.
+/// Beams of more cells than this from end to end are refused: two hundred metres in cells of 0.1 m.
 pub(crate) const FARTHEST: f64 = 2000.0;
+
+/// Why a beam is refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BeamError {
+    /// It covers more cells than can be numbered.
+    #[error(
+        "a beam covers {0} cells, 65535 are too many: use a coarser resolution, a shorter usable range or a narrower footprint"
+    )]
+    TooFine(usize),
+    /// It reaches too far, in cells.
+    #[error(
+        "a beam reaches {0:.0} cells far, {FARTHEST} are too many: use a coarser resolution or a shorter usable range"
+    )]
+    TooLong(f64),
+}
 
 /// Distances are rounded to multiples of this, 2⁻³⁶ m, so that beams that are rotations of
 /// each other by a quarter turn see the same distances, to the last bit.

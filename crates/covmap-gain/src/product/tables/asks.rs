@@ -8,11 +8,11 @@ use std::ops::{Range, RangeInclusive};
 /// A run of neighbouring cells from a view-point: row, first and last column, and which readings
 /// of theirs are asked for, bit by bit.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Ask {
-    pub(super) dy: isize,
+pub(crate) struct Ask {
+    pub(crate) dy: isize,
     first: isize,
     last: isize,
-    pub(super) readings: u64,
+    pub(crate) readings: u64,
 }
 
 /// The bit of a reading: with more than 64 several share one.
@@ -24,18 +24,18 @@ fn bit(reading: usize) -> u64 {
 /// What a ring's outcomes ask for: some readings of all its cells, or for each beam what its
 /// cells ask for themselves.
 #[derive(Debug, Clone)]
-pub(super) struct Asks {
+pub(crate) struct Asks {
     /// For each beam all its cells.
-    pub(super) cells: Vec<Vec<Ask>>,
-    pub(super) front: u64,
+    pub(crate) cells: Vec<Vec<Ask>>,
+    pub(crate) front: u64,
     /// In the order of the ring's own.
-    pub(super) near: Vec<(u64, Vec<Vec<Ask>>)>,
-    pub(super) no_echo: u64,
+    pub(crate) near: Vec<(u64, Vec<Vec<Ask>>)>,
+    pub(crate) no_echo: u64,
 }
 
 impl Asks {
     /// What each outcome of a ring asks for.
-    pub(super) fn new(ring: &Ring, stencil: &Stencil) -> Self {
+    pub(crate) fn new(ring: &Ring, stencil: &Stencil) -> Self {
         let cells = |beam: usize| &stencil.beams[beam].cells[ring.cells[beam].clone()];
         let bits = |readings: Range<usize>| readings.fold(0, |bits, reading| bits | bit(reading));
         let of_source = |source: &Source| match &source.shares {
@@ -63,7 +63,7 @@ impl Asks {
 impl Ask {
     /// The blocks of cells that a group of view-points asks for, of so many in a row.
     #[inline(always)]
-    pub(super) fn blocks(&self, group: usize, blocks: usize) -> RangeInclusive<isize> {
+    pub(crate) fn blocks(&self, group: usize, blocks: usize) -> RangeInclusive<isize> {
         let (lanes, x) = (LANES.cast_signed(), (group * LANES).cast_signed());
         let from = ((x + self.first) >> LANES.ilog2()).max(0);
         from..=((x + self.last + lanes - 1) >> LANES.ilog2()).min(blocks.cast_signed() - 1)

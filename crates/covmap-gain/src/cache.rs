@@ -1,21 +1,27 @@
 //! What each beam of each view-point sees and gains, kept until a scan changes it.
 
+mod onlookers;
 mod rows;
 
-use crate::cells::Cells;
-use crate::gain::bound::Potentials;
-use crate::gain::sweep::{Row, Sweep};
-use crate::look_ahead::{Ahead, Cone};
-use crate::memory::Size;
-use crate::onlookers::{Mark, Onlookers};
-use crate::view_points::{ViewPoints, groups, place};
-use crate::{PlannerParameters, Stencil};
-use covmap::Grid;
+use crate::belief::Cells;
+use crate::memory::{Size, whole};
+use crate::product::bound::Potentials;
+use crate::product::sweep::{Row, Sweep};
+use crate::sight::{Ahead, Cone};
+use crate::stencil::FARTHEST;
+use crate::view_points::{groups, place};
+use crate::{BeamError, RangePrediction, Stencil, ViewPoints};
 use covmap::lanes::{LANES, Lanes};
+use covmap::{Cell, CoverageMap, Grid};
 use covmap_model::{Registers, SensorModel};
+use onlookers::{Mark, Onlookers};
 use pulp::Arch;
 use rayon::prelude::*;
 use rows::{Bounds, Likely, Sight, average, up_to_date};
+
+/// The fast evaluation of E\[I\] is within this of the literal one, in units of the largest absolute
+/// gain of the view-points that are compared.
+pub const GAIN_TOLERANCE: f64 = 1e-5;
 
 /// So many outcomes of beams of groups are looked at together, at most, if all are likely: bounds
 /// the memory of their probabilities, 64 bytes each.
@@ -56,16 +62,32 @@ struct Group {
     has_reason: u16,
 }
 
-/// Cached values for every (view-point, beam).
+/// Whether E\[I\] is kept up to date.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Upkeep {
+    /// Gains and their bounds are kept from one question to the next.
+    Kept,
+    /// Gains are computed anew whenever they are asked for, and have no bounds: for who asks for
+    /// few.
+    OnDemand,
+}
+
+/// What every view-point sees, V(l), and is expected to gain, E\[I(l)\].
 ///
-/// A value depends on the first `horizon` cells of its beam only; when one of these changes
-/// the value is stale, and computed again when it is next asked for.
+/// View-points are the centres of the cells of a grid, given by their row-major index; the ring of
+/// sensors keeps its heading. The cache has a copy of the map, which [`update`](Self::update)
+/// brings up to date cell by cell. A value depends on some of the nearest cells of its beams only:
+/// when one of these changes it is stale, and computed again when it is next asked for, by one of
+/// the `refresh` functions.
 #[derive(Debug, Clone)]
-pub(crate) struct BeamCache {
+pub struct GainCache {
     grid: Grid,
+    stencil: Stencil,
+    cells: Cells,
+    upkeep: Upkeep,
     cones: Vec<Cone>,
     sweep: Sweep,
-    /// Only for strategies that weigh gains.
+    /// Only of gains that are kept.
     potentials: Option<Potentials>,
     onlookers: Onlookers,
     groups: Vec<Group>,
@@ -86,26 +108,41 @@ pub(crate) struct BeamCache {
 /// A gain may be above its bound by so much, by rounding.
 const ROUNDING: f32 = 1e-5;
 
-impl BeamCache {
-    pub(crate) fn new(
+impl GainCache {
+    /// A cache that knows nothing of the map yet. `heading` is the one that the ring keeps \[rad\].
+    ///
+    /// # Errors
+    /// If a beam covers too many cells.
+    pub fn new(
         model: &SensorModel,
-        stencil: &Stencil,
-        cells: &Cells,
+        heading: f64,
         grid: Grid,
-        parameters: &PlannerParameters,
-    ) -> Self {
+        prediction: RangePrediction,
+        upkeep: Upkeep,
+    ) -> Result<Self, BeamError> {
+        let reach = model.max_reach() / model.resolution();
+        if reach > FARTHEST {
+            return Err(BeamError::TooLong(reach));
+        }
+        let stencil = Stencil::new(model, heading);
+        let most = stencil.beams.iter().map(|b| b.cells.len()).max().unwrap_or(0);
+        if most >= usize::from(u16::MAX) {
+            return Err(BeamError::TooFine(most));
+        }
+        let cells = Cells::new(grid, model.parameters().bins, &stencil, prediction);
         let count = grid.height() * groups(&grid);
         let units = count * stencil.beams.len();
-        let cone = |beam| Cone::new(beam, cells, parameters.uniform_share);
-        Self {
+        let cone = |beam| Cone::new(beam, &cells, prediction.uniform_share);
+        Ok(Self {
             grid,
+            upkeep,
             cones: stencil.beams.iter().map(cone).collect(),
-            sweep: Sweep::new(model, stencil, grid),
-            potentials: parameters
-                .strategy
-                .uses_gain()
-                .then(|| Potentials::new(model, stencil, grid, cells)),
-            onlookers: Onlookers::new(stencil, grid),
+            sweep: Sweep::new(model, &stencil, grid),
+            potentials: (upkeep == Upkeep::Kept)
+                .then(|| Potentials::new(model, &stencil, grid, &cells)),
+            onlookers: Onlookers::new(&stencil, grid),
+            stencil,
+            cells,
             groups: vec![Group::default(); count],
             mean: vec![[0.0; LANES]; count],
             states: vec![State::default(); units],
@@ -113,42 +150,84 @@ impl BeamCache {
             gain: vec![[0.0; LANES]; units],
             arch: Registers::Avx512.or_narrower(),
             exceeded: false,
-        }
+        })
     }
 
-    /// About how many bytes this takes.
-    pub(crate) fn bytes(size: &Size) -> f64 {
+    /// The cells around a view-point.
+    pub fn stencil(&self) -> &Stencil {
+        &self.stencil
+    }
+
+    /// About how many bytes a cache takes at most while it is made and asked, with its copy of the
+    /// map: an estimate, mostly too large, to be asked for before there is one.
+    pub fn bytes(model: &SensorModel, grid: &Grid, upkeep: Upkeep) -> u64 {
+        // A stencil's cell with its weight, and as a cone's: capacities grow by doubling.
+        const BY_STENCIL_CELL: f64 = 100.0;
+        let size = Size::new(model, grid, upkeep);
+        let stencil = BY_STENCIL_CELL * size.stencil;
+        whole(stencil + Cells::bytes(&size) + Self::bytes_of_beams(&size))
+    }
+
+    fn bytes_of_beams(size: &Size) -> f64 {
         // A state, what is in sight, and a gain.
         const UNIT: f64 = 12.0 + 32.0 + 64.0;
         // Bits of a group, its means, and marks.
         const GROUP: f64 = 8.0 + 128.0 + 14.0;
         // Of a cell of a stencil who looks on, and its place and distance.
         const STENCIL: f64 = 24.0 + 12.0;
-        let potentials = if size.uses_gain { Potentials::bytes(size) } else { 0.0 };
+        let potentials = if size.upkeep == Upkeep::Kept { Potentials::bytes(size) } else { 0.0 };
         let own = size.blocks() * (GROUP + UNIT * size.beams) + STENCIL * size.stencil;
         own + potentials + Sweep::bytes(size)
     }
 
-    /// Takes note of a change of a cell, by its row-major index.
-    pub(crate) fn mark(&mut self, index: usize, mark: Mark) {
-        self.onlookers.mark(index, mark);
+    /// Takes over a cell's posterior. Returns whether what it reflects, or whether it can change
+    /// at all, is different now.
+    pub fn update(&mut self, map: &CoverageMap, cell: Cell) -> bool {
+        let Some(index) = self.grid.index(cell) else { return false };
+        let reflects_anew = self.cells.update(map, cell);
+        if reflects_anew {
+            self.onlookers.mark(index, Mark::Sight);
+        } else if self.upkeep == Upkeep::Kept {
+            self.onlookers.mark(index, Mark::Gain);
+        }
+        reflects_anew
     }
 
-    /// Marks the gains of a view-point, whatever changed.
-    pub(crate) fn forget_gain(&mut self, view_point: usize) {
-        let (group, _) = place(self.grid.width(), view_point);
+    /// Sets up to which distance a cell is a reason to measure \[m\]: 0 if it is none, as all are
+    /// to begin with.
+    pub fn set_limit(&mut self, index: usize, limit: f32) {
+        if self.cells.set_limit(index, limit) {
+            self.onlookers.mark(index, Mark::Limit);
+        }
+    }
+
+    /// Whether a cell is a reason to measure from so far away \[m\].
+    pub fn is_reason(&self, index: usize, distance: f32) -> bool {
+        self.cells.is_reason(self.cells.bordered(index), distance)
+    }
+
+    /// A cell's entropy \[nats\].
+    pub fn entropy(&self, index: usize) -> f32 {
+        self.cells.entropy(index)
+    }
+
+    /// Marks the gains of some groups of view-points, whatever changed.
+    fn forget_gains(&mut self, wanted: &ViewPoints) {
         let beams = self.cones.len();
-        (self.groups[group].gain, self.groups[group].bound) = (0, 0);
-        let states = &mut self.states[group * beams..(group + 1) * beams];
-        states.iter_mut().for_each(|s| (s.gain, s.bound) = (0, 0));
+        let groups = self.groups.iter_mut().zip(self.states.chunks_mut(beams));
+        let forgotten = groups.zip(wanted.groups()).filter(|(_, wanted)| **wanted != 0);
+        for ((group, states), _) in forgotten {
+            (group.gain, group.bound) = (0, 0);
+            states.iter_mut().for_each(|s| (s.gain, s.bound) = (0, 0));
+        }
     }
 
     /// Takes over what changed since the last time: forgets what depends on it, and brings up to
     /// date what is kept of the gains in the cells themselves.
-    fn take_changes(&mut self, cells: &mut Cells) {
-        let changed = cells.take_changed();
-        let (cells, beams) = (&*cells, self.cones.len());
-        let Self { onlookers, groups, states, sweep, potentials, arch, .. } = self;
+    fn take_changes(&mut self) {
+        let changed = self.cells.take_changed();
+        let beams = self.cones.len();
+        let Self { cells, onlookers, groups, states, sweep, potentials, arch, .. } = self;
         let forget_stale = || {
             onlookers.tell(|mark, group, beam, rank| {
                 let state = &mut states[group * beams + beam];
@@ -167,9 +246,8 @@ impl BeamCache {
     }
 
     /// Brings V(l), and whether it holds a reason to measure, up to date.
-    pub(crate) fn refresh_sight(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
-        self.take_changes(cells);
-        let cells = &*cells;
+    pub fn refresh_sight(&mut self, wanted: &ViewPoints) {
+        self.take_changes();
         let (per_row, beams) = (groups(&self.grid), self.cones.len());
         let rows = self
             .groups
@@ -179,7 +257,7 @@ impl BeamCache {
             .zip(wanted.groups().par_chunks(per_row))
             .enumerate()
             .with_min_len(ROWS);
-        let (grid, cones, arch) = (&self.grid, &self.cones, self.arch);
+        let (grid, cells, cones, arch) = (&self.grid, &self.cells, &self.cones, self.arch);
         rows.for_each_init(Ahead::new, |ahead, (y, (((groups, states), in_sight), wanted))| {
             if groups.iter().zip(wanted).any(|(group, wanted)| wanted & !group.sight != 0) {
                 let here = cells.bordered(y * grid.width());
@@ -197,11 +275,14 @@ impl BeamCache {
         });
     }
 
-    /// Brings upper bounds of E\[I(l)\] up to date where the gains are not, and V(l).
-    pub(crate) fn refresh_bound(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
-        self.refresh_sight(cells, wanted);
+    /// Brings upper bounds of E\[I(l)\] up to date where the gains are not, and V(l). Where there
+    /// are no bounds the gains themselves.
+    pub fn refresh_bounds(&mut self, wanted: &ViewPoints) {
+        if self.potentials.is_none() {
+            return self.refresh_gains(wanted);
+        }
+        self.refresh_sight(wanted);
         let Some(potentials) = &self.potentials else { return };
-        let cells = &*cells;
         let (per_row, beams) = (groups(&self.grid), self.cones.len());
         let rows = self
             .groups
@@ -212,7 +293,7 @@ impl BeamCache {
             .zip(wanted.groups().par_chunks(per_row))
             .enumerate()
             .with_min_len(ROWS);
-        let (grid, cones, arch) = (&self.grid, &self.cones, self.arch);
+        let (grid, cells, cones, arch) = (&self.grid, &self.cells, &self.cones, self.arch);
         rows.for_each_init(Ahead::new, |ahead, (y, ((((groups, states), gain), mean), wanted))| {
             if groups.iter().zip(wanted).any(|(group, wanted)| wanted & !group.bound != 0) {
                 let here = cells.bordered(y * grid.width());
@@ -233,20 +314,23 @@ impl BeamCache {
     }
 
     /// Whether a gain was met since this was last asked that is above its bound.
-    pub(crate) fn take_exceeded(&mut self) -> bool {
+    pub fn take_exceeded(&mut self) -> bool {
         std::mem::take(&mut self.exceeded)
     }
 
     /// Whether E\[I(l)\] of a view-point is up to date, not only a bound of it.
-    pub(crate) fn is_exact(&self, view_point: usize) -> bool {
+    pub fn is_exact(&self, view_point: usize) -> bool {
         let (group, lane) = place(self.grid.width(), view_point);
         self.groups[group].gain >> lane & 1 == 1
     }
 
     /// Brings E\[I(l)\] up to date, and V(l).
-    pub(crate) fn refresh_gain(&mut self, cells: &mut Cells, wanted: &ViewPoints) {
-        self.refresh_sight(cells, wanted);
-        let cells = &*cells;
+    pub fn refresh_gains(&mut self, wanted: &ViewPoints) {
+        if self.upkeep == Upkeep::OnDemand {
+            self.forget_gains(wanted);
+        }
+        self.refresh_sight(wanted);
+        let cells = &self.cells;
         let (per_row, beams) = (groups(&self.grid), self.cones.len());
         let stale = |(row, wanted): (usize, &[u16])| {
             let groups = &self.groups[row * per_row..(row + 1) * per_row];
@@ -306,19 +390,20 @@ impl BeamCache {
         });
     }
 
-    /// Which view-points of a group that are up to date hold a reason to measure in sight.
-    pub(crate) fn reasons(&self, group: usize) -> u16 {
-        self.groups[group].has_reason
+    /// Those of some view-points that are up to date which hold a reason to measure in sight, in
+    /// order.
+    pub fn with_reason(&self, view_points: &ViewPoints) -> Vec<usize> {
+        view_points.indices(|group| self.groups[group].has_reason)
     }
 
     /// Whether a view-point that is up to date holds a reason to measure in sight.
-    pub(crate) fn has_reason(&self, view_point: usize) -> bool {
+    pub fn has_reason(&self, view_point: usize) -> bool {
         let (group, lane) = place(self.grid.width(), view_point);
-        self.reasons(group) >> lane & 1 == 1
+        self.groups[group].has_reason >> lane & 1 == 1
     }
 
     /// E\[I(l)\] of a view-point that is up to date, or an upper bound \[nats\].
-    pub(crate) fn gain(&self, view_point: usize) -> f64 {
+    pub fn gain(&self, view_point: usize) -> f64 {
         let (group, lane) = place(self.grid.width(), view_point);
         self.mean[group][lane]
     }
@@ -326,7 +411,7 @@ impl BeamCache {
     /// V(l) of a view-point that is up to date: cells by their row-major index, with their
     /// distance from the sensor, in row-major order; a cell in two beams once, with the
     /// shorter distance.
-    pub(crate) fn cells_in_sight(&self, view_point: usize) -> Vec<(usize, f32)> {
+    pub fn cells_in_sight(&self, view_point: usize) -> Vec<(usize, f32)> {
         let mut seen: Vec<(usize, f32)> = self.sights(view_point).collect();
         seen.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         seen.dedup_by_key(|(index, _)| *index);
@@ -335,11 +420,7 @@ impl BeamCache {
 
     /// Whether a view-point that is up to date holds a cell in sight that `is_wanted`, by its
     /// row-major index and its distance from the sensor.
-    pub(crate) fn sees(
-        &self,
-        view_point: usize,
-        is_wanted: impl Fn(&(usize, f32)) -> bool,
-    ) -> bool {
+    pub fn sees(&self, view_point: usize, is_wanted: impl Fn(&(usize, f32)) -> bool) -> bool {
         self.sights(view_point).any(|cell| is_wanted(&cell))
     }
 

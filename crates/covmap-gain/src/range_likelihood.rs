@@ -3,6 +3,16 @@
 use crate::BeamStencil;
 use covmap::{Cell, CoverageMap};
 
+/// How ranges are predicted where the map does not say.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RangePrediction {
+    /// c_u: how much an unknown cell reflects, in \[0, 1\].
+    pub unknown_reflection: f64,
+    /// η: the share of every predicted range's probability that is spread over all ranges, in
+    /// \[0, 1\].
+    pub uniform_share: f64,
+}
+
 /// The probability of each range d_k, and of no echo.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct RangeLikelihood {

@@ -12,13 +12,13 @@
 //! be above its bound, and on coarse grids, of few ranges, some are. A decision that meets one
 //! evaluates all of its candidates.
 
-use super::evidence::{Evidence, Prior, Reading, to_f32};
-use super::interpolation::Probes;
-use super::sums::add_product;
+use super::sweep::add_product;
+use super::tables::evidence::{Evidence, Reading, to_f32};
+use super::tables::interpolation::Probes;
 use crate::Stencil;
-use crate::cells::Cells;
-use crate::look_ahead::{Ahead, Cone, Wide, as_f64, lanes};
+use crate::belief::{Cells, Prior};
 use crate::memory::Size;
+use crate::sight::{Ahead, Cone, Wide, as_f64, lanes};
 use crate::view_points::groups;
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
@@ -152,7 +152,7 @@ impl Family {
     fn potential(&self, prior: &Prior<'_>) -> Lanes {
         let mut potential = [0.0; LANES];
         for reading in &self.readings {
-            let gain = prior.gain(reading);
+            let gain = reading.gain(prior);
             for lane in 0..LANES {
                 potential[lane] =
                     if gain[lane] > potential[lane] { gain[lane] } else { potential[lane] };

@@ -1,10 +1,10 @@
 //! What is done for one row of groups of view-points, for each kind of vector registers.
 
 use super::{Group, State};
-use crate::cells::Cells;
-use crate::gain::bound::Potentials;
-use crate::gain::sweep::{Row, Unit};
-use crate::look_ahead::{Ahead, Cone, as_f64};
+use crate::belief::Cells;
+use crate::product::bound::Potentials;
+use crate::product::sweep::{Row, Unit};
+use crate::sight::{Ahead, Cone, as_f64};
 use covmap::lanes::{LANES, Lanes};
 use pulp::{Simd, WithSimd};
 

@@ -5,13 +5,14 @@
 //! cell, or evaluated, and then summed over the cells of each beam of each view-point, [`LANES`]
 //! neighbours of a row side by side.
 
-use super::asks::{Ask, Asks};
-use super::basis::Basis;
-use super::rings::{Ring, rings};
-use super::sums::{add_product, mix_outcomes};
-use crate::cells::Cells;
-use crate::look_ahead::as_f64;
+mod sums;
+
+use super::tables::asks::{Ask, Asks};
+use super::tables::basis::Basis;
+use super::tables::rings::{Ring, rings};
+use crate::belief::Cells;
 use crate::memory::Size;
+use crate::sight::as_f64;
 use crate::view_points::groups;
 use crate::{Stencil, StencilCell};
 use covmap::Grid;
@@ -20,6 +21,8 @@ use covmap_model::SensorModel;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 use std::ops::Range;
+pub(crate) use sums::add_product;
+use sums::mix_outcomes;
 
 /// The places of a unit's outcomes by where they end from a ring.
 #[derive(Debug, Clone, Default)]

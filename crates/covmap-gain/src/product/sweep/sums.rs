@@ -1,12 +1,12 @@
 //! Sums of gains over the cells of a beam, [`LANES`] view-points side by side.
 
-use super::front::Front;
-use super::rings::{Shares, Source};
+use crate::product::tables::front::Front;
+use crate::product::tables::rings::{Shares, Source};
 use covmap::lanes::{LANES, Lanes, TOGETHER};
 
 /// How much each of some readings weighs in all of a unit's outcomes from the `first` on together.
 #[inline(always)]
-pub(super) fn mix_outcomes<'a>(
+pub(crate) fn mix_outcomes<'a>(
     likely: impl Iterator<Item = (&'a usize, &'a Lanes)>,
     first: usize,
     weights: &[[f32; TOGETHER]],
@@ -25,7 +25,7 @@ pub(super) fn mix_outcomes<'a>(
 impl Front {
     /// Adds the gains of a beam's cells, given the shares of the readings.
     #[inline(always)]
-    pub(super) fn add(
+    pub(crate) fn add(
         &self,
         gain: &mut Lanes,
         shares: &[[Lanes; TOGETHER]],
@@ -72,7 +72,7 @@ fn sum_some<const R: usize>(
 impl Source {
     /// The gains of a beam's cells, summed.
     #[inline(always)]
-    pub(super) fn sum(
+    pub(crate) fn sum(
         &self,
         beam: usize,
         cells: &[isize],
@@ -145,7 +145,7 @@ fn add(sum: &mut Lanes, values: &Lanes, weight: f32) {
 }
 
 #[inline(always)]
-pub(super) fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
+pub(crate) fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
     for lane in 0..LANES {
         sum[lane] += a[lane] * b[lane];
     }

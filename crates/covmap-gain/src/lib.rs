@@ -1,0 +1,43 @@
+//! What a robot would see and is expected to learn at every view-point.
+//!
+//! Section 4 of Stachniss & Burgard (2003), equations (13) and (14). The principal type is
+//! [`GainCache`]: it is told which cells of the map changed, and answers what is in sight of a
+//! view-point and how much is expected to be gained there. [`expected_information_gain`] is the same
+//! gain by the equations as printed.
+//!
+//! This crate knows nothing of the world, and nothing of which view-point is chosen.
+//!
+//! # Units
+//! Metres, radians, nats.
+//!
+//! ```
+//! use covmap::Grid;
+//! use covmap_gain::{GainCache, RangePrediction, Upkeep, ViewPoints};
+//! use covmap_model::{ModelParameters, SensorModel};
+//! use covmap_sonar::SonarRing;
+//! use nalgebra::Point2;
+//!
+//! let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.2)?;
+//! let grid = Grid::new(Point2::origin(), 0.2, 40, 30)?;
+//! let prediction = RangePrediction { unknown_reflection: 0.0, uniform_share: 0.0 };
+//! let mut gains = GainCache::new(&model, 0.0, grid, prediction, Upkeep::Kept)?;
+//! gains.refresh_gains(&ViewPoints::one(&grid, 620));
+//! assert!(gains.gain(620) > 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod belief;
+mod cache;
+mod literal;
+mod memory;
+mod product;
+mod range_likelihood;
+mod sight;
+mod stencil;
+mod view_points;
+
+pub use cache::{GAIN_TOLERANCE, GainCache, Upkeep};
+pub use literal::expected_information_gain;
+pub use range_likelihood::{RangeLikelihood, RangePrediction, range_likelihood, reflection};
+pub use stencil::{BeamError, BeamStencil, Stencil, StencilCell};
+pub use view_points::ViewPoints;

@@ -1,0 +1,67 @@
+//! How much memory a cache will take, before it takes any.
+
+use crate::Upkeep;
+use crate::sight::as_f64;
+use covmap::Grid;
+use covmap::lanes::LANES;
+use covmap_model::SensorModel;
+
+/// What the memory of a cache depends on: counts, as f64, because those of absurd inputs are
+/// larger than integers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Size {
+    /// Columns and rows of the grid.
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+    pub(crate) bins: f64,
+    /// How far the cells of a stencil lie from its view-point, in cells.
+    pub(crate) border: f64,
+    pub(crate) beams: f64,
+    /// The cells of all beams of a stencil.
+    pub(crate) stencil: f64,
+    /// The cells of all beams at one distance: so many distances are told apart, but for the
+    /// symmetry of a ring that looks the same after a quarter turn.
+    pub(crate) ring: f64,
+    /// How many ranges there are.
+    pub(crate) ranges: f64,
+    pub(crate) upkeep: Upkeep,
+}
+
+impl Size {
+    pub(crate) fn new(model: &SensorModel, grid: &Grid, upkeep: Upkeep) -> Self {
+        let (footprint, reach) = (model.footprint(), model.max_reach());
+        let (r, beams) = (model.resolution(), footprint.beams());
+        let stencil: f64 = (0..beams).map(|beam| footprint.cells_about(beam, reach, r)).sum();
+        let ranges = reach / r + 1.0;
+        let [width, height, bins, beams] =
+            [grid.width(), grid.height(), model.parameters().bins, beams].map(as_f64);
+        Self {
+            width,
+            height,
+            bins,
+            border: footprint.farthest(reach) / r + 1.0,
+            beams,
+            stencil,
+            ring: stencil / ranges,
+            ranges,
+            upkeep,
+        }
+    }
+
+    /// How many groups of neighbouring view-points, or blocks of cells.
+    pub(crate) fn blocks(&self) -> f64 {
+        (self.width / as_f64(LANES)).ceil() * self.height
+    }
+
+    /// How many cells a raster with a border has.
+    pub(crate) fn bordered(&self) -> f64 {
+        (self.width + 2.0 * self.border) * (self.height + 2.0 * self.border)
+    }
+}
+
+/// A number of bytes.
+pub(crate) fn whole(bytes: f64) -> u64 {
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    let bytes = bytes as u64;
+    bytes
+}

@@ -1,0 +1,178 @@
+//! The cache on random maps: its gains are those of the literal equations, below their bounds, and
+//! what is kept is what a fresh cache computes.
+#![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
+
+use covmap::{CoverageMap, Grid};
+use covmap_gain::{
+    BeamError, GAIN_TOLERANCE, GainCache, RangePrediction, Upkeep, ViewPoints,
+    expected_information_gain,
+};
+use covmap_model::{
+    FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel, integrate,
+    integrate_body,
+};
+use covmap_sonar::{Beam, Range, Scan, SonarRing};
+use nalgebra::{Isometry2, Point2};
+use proptest::prelude::*;
+use std::f64::consts::PI;
+
+const PLAIN: RangePrediction = RangePrediction { unknown_reflection: 0.0, uniform_share: 0.0 };
+
+/// One view-point of so many is compared with the literal equations, which are slow.
+const SAMPLED: usize = 37;
+
+struct Setting {
+    model: SensorModel,
+    prediction: RangePrediction,
+    map: CoverageMap,
+    cache: GainCache,
+}
+
+impl Setting {
+    fn new(model: &ModelParameters, ring: &SonarRing, prediction: RangePrediction) -> Self {
+        let model = SensorModel::new(model, ring, 0.1).unwrap();
+        let grid = Grid::new(Point2::new(-2.0, -1.5), 0.1, 40, 30).unwrap();
+        let mut map = CoverageMap::new(grid, model.parameters().bins).unwrap();
+        let mut cache = GainCache::new(&model, 0.0, grid, prediction, Upkeep::Kept).unwrap();
+        for change in integrate_body(&mut map, Point2::origin(), Point2::origin(), 0.27) {
+            cache.update(&map, change.cell);
+        }
+        Self { model, prediction, map, cache }
+    }
+
+    fn scan(&mut self, (x, y, ranges): &(f64, f64, Vec<Range>)) {
+        let pose = Isometry2::translation(*x, *y);
+        let scan = Scan { pose, time: 0.0, ranges: ranges.clone() };
+        for change in integrate(&self.model, &mut self.map, &scan) {
+            self.cache.update(&self.map, change.cell);
+        }
+    }
+
+    fn all(&self) -> ViewPoints {
+        let mut all = ViewPoints::new(self.map.grid());
+        (0..self.map.grid().len()).for_each(|index| all.insert(index));
+        all
+    }
+
+    /// All gains as they are cached.
+    fn gains(&mut self) -> Vec<f64> {
+        let all = self.all();
+        self.cache.refresh_gains(&all);
+        (0..self.map.grid().len()).map(|index| self.cache.gain(index)).collect()
+    }
+
+    /// A cache that is told of the whole map at once.
+    fn fresh(&self) -> Setting {
+        let grid = *self.map.grid();
+        let mut cache =
+            GainCache::new(&self.model, 0.0, grid, self.prediction, Upkeep::Kept).unwrap();
+        for cell in grid.cells() {
+            cache.update(&self.map, cell);
+        }
+        Self { model: self.model.clone(), map: self.map.clone(), cache, ..*self }
+    }
+}
+
+fn some_scans() -> impl Strategy<Value = Vec<(f64, f64, Vec<Range>)>> {
+    let range = prop_oneof![
+        5 => (0.2..2.0f64).prop_map(Range::Echo),
+        1 => Just(Range::NoEcho),
+        1 => Just(Range::Missing),
+    ];
+    let ranges = prop::collection::vec(range, 24);
+    prop::collection::vec((-1.0..1.0f64, -0.7..0.7f64, ranges), 1..4)
+}
+
+/// Models that differ in all that the fast evaluation makes use of.
+fn some_models() -> impl Strategy<Value = ModelParameters> {
+    let gamma = (0.02..0.4f64, 0.0..0.4f64, prop_oneof![Just(0.0), 0.0..0.3f64]);
+    let evidence = (gamma, prop::sample::select(vec![0.0, 0.1, 0.15, 0.35]), 0.1..=1.0f64);
+    let usable_range = prop::sample::select(vec![1.5, 1.5, 3.0, 4.05]);
+    (evidence, prop_oneof![Just(0.0), 0.1..1.5f64], any::<bool>(), usable_range).prop_map(
+        |(((base, per_cell_distance, per_range), behind, tempering), no_echo, cones, range)| {
+            let by_hand = ModelParameters::by_hand();
+            let half_angle = 0.13;
+            ModelParameters {
+                usable_range: range,
+                // Few bins cannot show a narrow Gaussian.
+                sigma_in: if range < 2.0 { by_hand.sigma_in } else { 0.3 },
+                gamma: Linear { base, per_cell_distance, per_range },
+                behind,
+                tempering,
+                no_echo: NoEchoParameters { range: no_echo, ..by_hand.no_echo },
+                footprint: if cones {
+                    FootprintRule::Cones { half_angle }
+                } else {
+                    FootprintRule::Sectors { half_angle }
+                },
+                ..by_hand
+            }
+        },
+    )
+}
+
+/// Sensors around the robot, so far from its centre \[m\].
+fn ring(offset: f64) -> SonarRing {
+    let beam = |i: u32| {
+        let angle = 2.0 * PI * f64::from(i) / 24.0;
+        let pose = Isometry2::rotation(angle) * Isometry2::translation(offset, 0.0);
+        Beam { pose, half_angle: 0.13, min_range: 0.0, max_range: 5.0 }
+    };
+    SonarRing::new((0..24).map(beam).collect()).unwrap()
+}
+
+/// Compares some gains with the literal equations, and all with those of a fresh cache.
+fn check(mut s: Setting, scans: Vec<(f64, f64, Vec<Range>)>) -> Result<(), TestCaseError> {
+    for scan in scans {
+        s.scan(&scan);
+        let gains = s.gains();
+        let largest = gains.iter().map(|gain| gain.abs()).fold(0.0, f64::max);
+        for (index, gain) in gains.iter().enumerate().step_by(SAMPLED) {
+            let cell = s.map.grid().cell(index);
+            let stencil = s.cache.stencil();
+            let exact = expected_information_gain(&s.map, &s.model, stencil, s.prediction, cell);
+            let off = (gain - exact).abs();
+            prop_assert!(off <= GAIN_TOLERANCE * largest, "{cell:?}: {gain} is not {exact}");
+        }
+        prop_assert_eq!(gains, s.fresh().gains());
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(16))]
+
+    #[test]
+    fn the_cached_gain_is_the_literal_one_for_all_predictions(
+        scans in some_scans(), bins in prop::sample::select(vec![6, 11, 16, 33]),
+        share in prop_oneof![3 => Just(0.0), 1 => 0.0..0.2f64],
+        unknown in prop_oneof![Just(0.0), 0.0..0.5f64]
+    ) {
+        let mut model = ModelParameters { bins, usable_range: 1.5, ..ModelParameters::by_hand() };
+        if bins < 11 {
+            (model.sigma_out.base, model.sigma_in) = (0.12, 0.3);
+        }
+        let prediction = RangePrediction { unknown_reflection: unknown, uniform_share: share };
+        check(Setting::new(&model, &SonarRing::b21r(), prediction), scans)?;
+    }
+
+    #[test]
+    fn the_cached_gain_is_the_literal_one_for_all_models_and_rings(
+        model in some_models(), scans in some_scans(),
+        offset in prop::sample::select(vec![0.0, 0.05, 0.1, 0.2])
+    ) {
+        // With an offset of half a cell there are cells exactly where two rings meet.
+        check(Setting::new(&model, &ring(offset), PLAIN), scans)?;
+    }
+}
+
+#[test]
+fn beams_of_too_many_cells_are_refused() {
+    let refused = |r: f64| {
+        let model = SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), r).unwrap();
+        let grid = Grid::new(Point2::origin(), r, 4, 4).unwrap();
+        GainCache::new(&model, 0.0, grid, PLAIN, Upkeep::OnDemand).map(|_| ()).unwrap_err()
+    };
+    assert!(matches!(refused(0.001), BeamError::TooLong(cells) if cells > 3000.0));
+    assert!(matches!(refused(0.0035), BeamError::TooFine(cells) if cells > 65_534));
+}
