@@ -44,7 +44,7 @@ pub(crate) fn profiles(profiles: &[Profile], fitted: &ModelParameters) -> Figure
             line: true,
             marks: true,
         };
-        let value = profile.parameter.get(fitted);
+        let value = profile.parameter.get(fitted).unwrap_or(f64::NAN);
         Chart {
             title: format!("{:?} = {value:.3}", profile.parameter),
             subtitle: String::new(),

@@ -46,7 +46,7 @@ pub(crate) fn table(model: &SensorModel, range: f64) -> (String, usize) {
 /// the echo updates cells farther behind.
 pub(crate) fn cell_distances(model: &SensorModel, range: f64) -> Vec<f64> {
     let resolution = model.resolution();
-    let behind = model.parameters().behind.max(0.20);
+    let behind = model.parameters().update.behind().max(0.20);
     let last = range + 0.5 * resolution + behind + 1e-9 * resolution;
     (5u32..).map(|i| f64::from(i) * resolution / 10.0).take_while(|d| *d <= last).collect()
 }

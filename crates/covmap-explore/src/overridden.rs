@@ -21,7 +21,7 @@ pub enum OverrideError {
 
 impl Config {
     /// The configuration with another value of one parameter, such as
-    /// `"model.no_echo.range"`.
+    /// `"model.update.Product.no_echo.range"`.
     ///
     /// A variant without fields is a string, `"Off"`; one with fields is a map from its name,
     /// `{"Banded": {"first": 1.0, "closest": 0.5}}`.
@@ -57,7 +57,10 @@ mod tests {
     fn a_parameter_is_set_by_its_path() {
         let set = |path, value: Value| Config::b21r().overridden(path, &value).unwrap();
         assert_eq!(set("resolution", json!(0.15)).resolution, 0.15);
-        assert_eq!(set("model.no_echo.range", json!(0)).model.no_echo.range, 0.0);
+        assert_eq!(
+            set("model.update.Product.no_echo.range", json!(0)).model.update.no_echo_range(),
+            0.0
+        );
         let off = set("planner.body_evidence", json!("Off"));
         assert_eq!(off.planner.body_evidence, BodyEvidence::Off);
         let rule = json!({"Banded": {"first": 2.0, "closest": 0.7}});

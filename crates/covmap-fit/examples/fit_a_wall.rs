@@ -53,7 +53,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let likelihood = |p| score(&examples, p).map(|score| score.all.log_likelihood);
     println!("before: {:.3} nats a cell", likelihood(&begin)?);
     println!("after:  {:.3} nats a cell", likelihood(&fitted.parameters)?);
-    let ModelParameters { sigma_in, tempering, .. } = fitted.parameters;
-    println!("σ_in = {sigma_in:.3}, tempering = {tempering:.3}, {} maps", fitted.path.len());
+    for axis in &settings.axes {
+        let value = axis.parameter.get(&fitted.parameters).unwrap_or(f64::NAN);
+        println!("{:?} = {value:.3}", axis.parameter);
+    }
+    println!("{} maps", fitted.path.len());
     Ok(())
 }

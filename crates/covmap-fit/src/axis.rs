@@ -1,6 +1,6 @@
 //! The free parameters, each with its bounds.
 
-use covmap_model::{FootprintRule, ModelParameters};
+use covmap_model::{CauseParameters, FootprintRule, ModelParameters, ProductParameters, Update};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 
@@ -31,14 +31,59 @@ pub enum Parameter {
     NoEchoRange,
     /// γ of these cells.
     NoEchoGamma,
-    /// The tempering exponent.
+    /// The tempering exponent of Eq. (9).
     Tempering,
+    /// τ of the update by cause \[m\].
+    RangeTolerance,
+    /// ℓ/r of the update by cause, in cells.
+    CellDepth,
+    /// Expected coverage of unknown cells.
+    UnknownCoverage,
+    /// p: how sharply expected coverage tells who answered.
+    Sharpness,
+    /// a_0: how much chance competes.
+    Chance,
+    /// κ: how much a clear view counts.
+    FirstEcho,
+    /// σ_in of the update by cause at distance 0.
+    EndSigmaBase,
+    /// Its slope in the cell's distance \[1/m\].
+    EndSigmaPerCellDistance,
+    /// b: share of the cause that counts behind the end.
+    BehindWeight,
+    /// σ of "covered" behind the end.
+    BehindSigma,
+    /// f_0: share of "free" at the sensor.
+    FreeShare,
+    /// d_f: where 1/e of it is left \[m\].
+    FreeRange,
+    /// How fast it falls with the bearing, in half-widths.
+    FreeWidth,
+    /// σ of "free".
+    FreeSigma,
+    /// β: how surely an echo from beyond the usable range passed.
+    Beyond,
+    /// ν: how surely a beam without an echo passed.
+    NoEchoShare,
 }
 
 impl Parameter {
-    /// Where the parameter stands.
-    fn place(self, p: &mut ModelParameters) -> &mut f64 {
-        match self {
+    /// Where the parameter stands; `None` if the update has no such parameter.
+    fn place(self, p: &mut ModelParameters) -> Option<&mut f64> {
+        match (self, &mut p.update) {
+            (Self::HalfAngle, _) => match &mut p.footprint {
+                FootprintRule::Sectors { half_angle } | FootprintRule::Cones { half_angle } => {
+                    Some(half_angle)
+                }
+            },
+            (Self::UsableRange, _) => Some(&mut p.usable_range),
+            (_, Update::Product(product)) => self.place_in_product(product),
+            (_, Update::Cause(cause)) => self.place_in_cause(cause),
+        }
+    }
+
+    fn place_in_product(self, p: &mut ProductParameters) -> Option<&mut f64> {
+        Some(match self {
             Self::GammaBase => &mut p.gamma.base,
             Self::GammaPerCellDistance => &mut p.gamma.per_cell_distance,
             Self::GammaPerRange => &mut p.gamma.per_range,
@@ -47,26 +92,48 @@ impl Parameter {
             Self::SigmaOutPerRange => &mut p.sigma_out.per_range,
             Self::SigmaIn => &mut p.sigma_in,
             Self::Behind => &mut p.behind,
-            Self::HalfAngle => match &mut p.footprint {
-                FootprintRule::Sectors { half_angle } | FootprintRule::Cones { half_angle } => {
-                    half_angle
-                }
-            },
-            Self::UsableRange => &mut p.usable_range,
             Self::NoEchoRange => &mut p.no_echo.range,
             Self::NoEchoGamma => &mut p.no_echo.gamma,
             Self::Tempering => &mut p.tempering,
-        }
+            _ => return None,
+        })
     }
 
-    /// Its value.
-    pub fn get(self, parameters: &ModelParameters) -> f64 {
-        *self.place(&mut parameters.clone())
+    fn place_in_cause(self, p: &mut CauseParameters) -> Option<&mut f64> {
+        Some(match self {
+            Self::Behind => &mut p.behind,
+            Self::NoEchoRange => &mut p.no_echo.range,
+            Self::RangeTolerance => &mut p.range_tolerance,
+            Self::CellDepth => &mut p.cell_depth,
+            Self::UnknownCoverage => &mut p.unknown_coverage,
+            Self::Sharpness => &mut p.sharpness,
+            Self::Chance => &mut p.chance,
+            Self::FirstEcho => &mut p.first_echo,
+            Self::EndSigmaBase => &mut p.sigma_in.base,
+            Self::EndSigmaPerCellDistance => &mut p.sigma_in.per_cell_distance,
+            Self::BehindWeight => &mut p.behind_weight,
+            Self::BehindSigma => &mut p.sigma_behind,
+            Self::FreeShare => &mut p.free.share,
+            Self::FreeRange => &mut p.free.range,
+            Self::FreeWidth => &mut p.free.width,
+            Self::FreeSigma => &mut p.free.sigma,
+            Self::Beyond => &mut p.beyond,
+            Self::NoEchoShare => &mut p.no_echo.share,
+            _ => return None,
+        })
     }
 
-    /// Sets it. Whether the parameters still make a model is checked where one is built.
+    /// Its value; `None` if the update has no such parameter.
+    pub fn get(self, parameters: &ModelParameters) -> Option<f64> {
+        self.place(&mut parameters.clone()).map(|value| *value)
+    }
+
+    /// Sets it; nothing happens if the update has no such parameter. Whether the parameters still
+    /// make a model is checked where one is built.
     pub fn set(self, parameters: &mut ModelParameters, value: f64) {
-        *self.place(parameters) = value;
+        if let Some(place) = self.place(parameters) {
+            *place = value;
+        }
     }
 }
 
@@ -99,6 +166,9 @@ pub enum AxisError<P: Debug = Parameter> {
         /// Upper bound.
         to: f64,
     },
+    /// The model's update has no such parameter.
+    #[error("{0:?} is no parameter of the model's update")]
+    NotItsParameter(P),
     /// The parameter has two axes.
     #[error("{0:?} has two axes")]
     Twice(P),
@@ -147,8 +217,12 @@ impl<P: Copy + PartialEq + Debug> Axis<P> {
 
 impl Axis {
     /// The place in \[0, 1\] of the value that some parameters have.
-    pub fn place(&self, parameters: &ModelParameters) -> f64 {
-        self.place_of(self.parameter.get(parameters))
+    ///
+    /// # Errors
+    /// If their update has no such parameter.
+    pub fn place(&self, parameters: &ModelParameters) -> Result<f64, AxisError> {
+        let value = self.parameter.get(parameters);
+        value.map(|value| self.place_of(value)).ok_or(AxisError::NotItsParameter(self.parameter))
     }
 
     /// Sets the parameter to the value at a place in \[0, 1\].
@@ -166,40 +240,57 @@ mod tests {
         #[test]
         fn what_is_set_is_found_again(place in 0.0..1.0f64, from in 0.0..0.5f64) {
             let axis = Axis { parameter: Parameter::NoEchoGamma, from, to: 2.0 };
-            let mut parameters = ModelParameters::b21r();
+            let mut parameters = ModelParameters::product();
             axis.set(&mut parameters, place);
-            prop_assert!((axis.place(&parameters) - place).abs() < 1e-9);
+            prop_assert!((axis.place(&parameters).unwrap() - place).abs() < 1e-9);
         }
     }
 
     #[test]
     fn every_parameter_is_another_one() {
-        use Parameter::{
-            Behind, GammaBase, GammaPerCellDistance, GammaPerRange, HalfAngle, NoEchoGamma,
-            NoEchoRange, SigmaIn, SigmaOutBase, SigmaOutPerCellDistance, SigmaOutPerRange,
-            Tempering, UsableRange,
-        };
-        let all = [
-            GammaBase,
-            GammaPerCellDistance,
-            GammaPerRange,
-            SigmaOutBase,
-            SigmaOutPerCellDistance,
-            SigmaOutPerRange,
-            SigmaIn,
-            Behind,
-            HalfAngle,
-            UsableRange,
-            NoEchoRange,
-            NoEchoGamma,
-            Tempering,
+        use Parameter as P;
+        let shared = [P::Behind, P::HalfAngle, P::UsableRange, P::NoEchoRange];
+        let product = [
+            P::GammaBase,
+            P::GammaPerCellDistance,
+            P::GammaPerRange,
+            P::SigmaOutBase,
+            P::SigmaOutPerCellDistance,
+            P::SigmaOutPerRange,
+            P::SigmaIn,
+            P::NoEchoGamma,
+            P::Tempering,
         ];
-        let mut parameters = ModelParameters::b21r();
-        for (value, parameter) in (1..).zip(all) {
-            parameter.set(&mut parameters, f64::from(value));
-        }
-        for (value, parameter) in (1..).zip(all) {
-            assert!((parameter.get(&parameters) - f64::from(value)).abs() < 1e-12, "{parameter:?}");
+        let cause = [
+            P::RangeTolerance,
+            P::CellDepth,
+            P::UnknownCoverage,
+            P::Sharpness,
+            P::Chance,
+            P::FirstEcho,
+            P::EndSigmaBase,
+            P::EndSigmaPerCellDistance,
+            P::BehindWeight,
+            P::BehindSigma,
+            P::FreeShare,
+            P::FreeRange,
+            P::FreeWidth,
+            P::FreeSigma,
+            P::Beyond,
+            P::NoEchoShare,
+        ];
+        for (mut parameters, own, foreign) in [
+            (ModelParameters::product(), &product[..], &cause[..]),
+            (ModelParameters::by_cause(), &cause, &product),
+        ] {
+            let all = || shared.iter().chain(own);
+            for (value, parameter) in (1..).zip(all()) {
+                parameter.set(&mut parameters, f64::from(value));
+            }
+            for (value, parameter) in (1..).zip(all()) {
+                assert_eq!(parameter.get(&parameters), Some(f64::from(value)), "{parameter:?}");
+            }
+            assert!(foreign.iter().all(|parameter| parameter.get(&parameters).is_none()));
         }
     }
 

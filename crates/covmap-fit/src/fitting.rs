@@ -144,7 +144,7 @@ pub fn fit(
     let value = |place: &[f64]| {
         Some(settings.weighting.objective(&score(examples, &parameters(place)).ok()?))
     };
-    let given: Vec<f64> = axes.iter().map(|axis| axis.place(begin)).collect();
+    let given: Vec<f64> = axes.iter().map(|axis| axis.place(begin)).collect::<Result<_, _>>()?;
     let is_allowed = |place: &[f64]| {
         let method = Method { model: parameters(place), update: Update::Coverage };
         examples.iter().try_for_each(|example| method.check(example).map(drop))

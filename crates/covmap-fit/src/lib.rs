@@ -12,9 +12,9 @@
 //!
 //! ```
 //! let axis = covmap_fit::Axis { parameter: covmap_fit::Parameter::SigmaIn, from: 0.15, to: 0.5 };
-//! let mut parameters = covmap_model::ModelParameters::b21r();
+//! let mut parameters = covmap_model::ModelParameters::product();
 //! axis.set(&mut parameters, 1.0);
-//! assert!((parameters.sigma_in - 0.5).abs() < 1e-12);
+//! assert_eq!(axis.parameter.get(&parameters), Some(0.5));
 //! ```
 
 mod axis;

@@ -75,7 +75,7 @@ impl MethodParameter {
     /// Its value; `None` if the method has no such parameter.
     pub fn get(self, method: &Method) -> Option<f64> {
         match self {
-            Self::Model(parameter) => Some(parameter.get(&method.model)),
+            Self::Model(parameter) => parameter.get(&method.model),
             _ => self.place(&mut method.update.clone()).map(|value| *value),
         }
     }

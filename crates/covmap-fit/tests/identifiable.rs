@@ -69,7 +69,7 @@ fn check(searched: &[(Parameter, f64, f64, f64)]) {
     let at_known = covmap_fit::score(&examples, &known).unwrap().all.log_likelihood;
     assert!(fitted.log_likelihood > at_known - 1e-3, "{} {at_known}", fitted.log_likelihood);
     for &(parameter, value, from, to) in searched {
-        let found = parameter.get(&fitted.parameters);
+        let found = parameter.get(&fitted.parameters).unwrap();
         assert!((found - value).abs() < 0.1 * (to - from), "{parameter:?}: {found}, not {value}");
     }
 }

@@ -8,8 +8,7 @@ use covmap_gain::{
     expected_information_gain,
 };
 use covmap_model::{
-    FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel, integrate,
-    integrate_body,
+    FootprintRule, Linear, ModelParameters, SensorModel, integrate, integrate_body,
 };
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
@@ -94,12 +93,6 @@ fn some_models() -> impl Strategy<Value = ModelParameters> {
             let half_angle = 0.13;
             ModelParameters {
                 usable_range: range,
-                // Few bins cannot show a narrow Gaussian.
-                sigma_in: if range < 2.0 { by_hand.sigma_in } else { 0.3 },
-                gamma: Linear { base, per_cell_distance, per_range },
-                behind,
-                tempering,
-                no_echo: NoEchoParameters { range: no_echo, ..by_hand.no_echo },
                 footprint: if cones {
                     FootprintRule::Cones { half_angle }
                 } else {
@@ -107,6 +100,13 @@ fn some_models() -> impl Strategy<Value = ModelParameters> {
                 },
                 ..by_hand
             }
+            .with_product(|product| {
+                product.sigma_in = if range < 2.0 { product.sigma_in } else { 0.3 };
+                product.gamma = Linear { base, per_cell_distance, per_range };
+                product.behind = behind;
+                product.tempering = tempering;
+                product.no_echo.range = no_echo;
+            })
         },
     )
 }
@@ -150,7 +150,9 @@ proptest! {
     ) {
         let mut model = ModelParameters { bins, usable_range: 1.5, ..ModelParameters::by_hand() };
         if bins < 11 {
-            (model.sigma_out.base, model.sigma_in) = (0.12, 0.3);
+            model = model.with_product(|product| {
+                (product.sigma_out.base, product.sigma_in) = (0.12, 0.3);
+            });
         }
         let prediction = RangePrediction { unknown_reflection: unknown, uniform_share: share };
         check(Setting::new(&model, &SonarRing::b21r(), prediction), scans)?;

@@ -61,6 +61,9 @@ pub struct FootprintCell {
     pub cell: Cell,
     /// d^l, the distance from the sensor to the cell's centre \[m\].
     pub cell_distance: f64,
+    /// Where the cell's centre lies across the beam: 0 at the right border, 1 at the left, and
+    /// evenly along the chord between them; ½ where the beam has no width.
+    pub across: f64,
 }
 
 /// A beam's sector in the frame of the robot.
@@ -182,10 +185,12 @@ impl Footprint {
             let Some((left, right)) = rows.columns(grid, y) else { continue };
             let (left, right) = (left.max(first.x), right.min(last.x));
             for x in (left..=right).step_by(WIDE) {
-                let distances = sector.covered(grid, Cell::new(x, y), reach);
-                for (cell_x, cell_distance) in (x..=right).zip(distances) {
+                let (distances, across) = sector.covered(grid, Cell::new(x, y), reach);
+                for (cell_x, (cell_distance, across)) in
+                    (x..=right).zip(distances.into_iter().zip(across))
+                {
                     if cell_distance >= 0.0 {
-                        visit(FootprintCell { cell: Cell::new(cell_x, y), cell_distance });
+                        visit(FootprintCell { cell: Cell::new(cell_x, y), cell_distance, across });
                     }
                 }
             }
@@ -271,32 +276,35 @@ impl Sector {
         (low, high)
     }
 
-    /// The distances from the sensor of a cell and the next ones of its row; −1 for a cell
-    /// that the beam does not cover.
+    /// The distances from the sensor of a cell and the next ones of its row, −1 for a cell
+    /// that the beam does not cover; and where they lie across the beam.
     #[inline(always)]
-    fn covered(&self, grid: &Grid, cell: Cell, reach: f64) -> [f64; WIDE] {
+    fn covered(&self, grid: &Grid, cell: Cell, reach: f64) -> ([f64; WIDE], [f64; WIDE]) {
         let y = grid.center(cell).y;
-        let (mut centers, mut distances) = ([0.0; WIDE], [0.0; WIDE]);
+        let (mut centers, mut distances, mut across) = ([0.0; WIDE], [0.0; WIDE], [0.5; WIDE]);
         for (dx, x) in (0..).zip(&mut centers) {
             *x = grid.center(Cell::new(cell.x + dx, cell.y)).x;
         }
-        for (x, d) in centers.iter().zip(&mut distances) {
+        for ((x, d), across) in centers.iter().zip(&mut distances).zip(&mut across) {
             let from_sensor = Vector2::new(*x, y) - self.sensor.coords;
             let from_apex = Vector2::new(*x, y) - self.apex.coords;
             let distance = length(from_sensor);
             let border = BORDER * (from_apex.x.abs() + from_apex.y.abs());
+            let (right, left) = (self.first.perp(&from_apex), from_apex.perp(&self.last));
             let covered = (from_sensor.dot(&self.axis) > 0.0)
                 & (distance <= reach)
-                & (self.first.perp(&from_apex) >= -border)
-                & (from_apex.perp(&self.last) > border);
+                & (right >= -border)
+                & (left > border);
             *d = if covered { distance } else { -1.0 };
+            let width = right + left;
+            *across = if width > border { (right / width).clamp(0.0, 1.0) } else { 0.5 };
         }
         if self.with_axis {
             for (dx, d) in (0..).zip(&mut distances) {
                 *d = d.max(self.distance_along_axis(grid, cell.offset(dx, 0), reach));
             }
         }
-        distances
+        (distances, across)
     }
 
     /// The distance from the sensor of a cell that the axis traverses; −1 for another.
@@ -464,8 +472,9 @@ mod tests {
             let (grid, pose) = (grid(50), Isometry2::new(Vector2::new(x, y), heading));
             let sector = footprint.sectors[beam].moved(&pose);
             let all: Vec<FootprintCell> = grid.cells().filter_map(|cell| {
-                let cell_distance = sector.covered(&grid, cell, reach)[0];
-                (cell_distance >= 0.0).then_some(FootprintCell { cell, cell_distance })
+                let (distances, across) = sector.covered(&grid, cell, reach);
+                let (cell_distance, across) = (distances[0], across[0]);
+                (cell_distance >= 0.0).then_some(FootprintCell { cell, cell_distance, across })
             }).collect();
             prop_assert_eq!(covered(&footprint, &grid, &pose, beam, reach), all);
         }

@@ -1,11 +1,15 @@
 //! Eq. (1)–(8): multiplying a measurement into the map, as printed; [`fast`] is what runs.
 
+mod by_cause;
+mod cause_terms;
 mod evidence;
 mod fast;
 
 pub use fast::integrate;
 
-use crate::{Outcome, SensorModel};
+use by_cause::explain;
+
+use crate::{FootprintCell, Met, Outcome, SensorModel, Update};
 use covmap::{Cell, Change, CoverageMap, Grid, MAX_BINS};
 use covmap_sonar::Scan;
 use nalgebra::{Point2, Vector2};
@@ -44,10 +48,28 @@ pub fn integrate_literally(model: &SensorModel, map: &mut CoverageMap, scan: &Sc
     let mut evidence = [0.0; MAX_BINS];
     let evidence = &mut evidence[..map.bins()];
     let mut changes = Vec::new();
-    model.for_each_covered(&grid, scan, |cell, cell_distance, outcome| {
-        model.evidence(cell_distance, outcome, evidence);
-        changes.extend(map.multiply(cell, evidence));
-    });
+    match &model.parameters().update {
+        Update::Product(_) => {
+            model.for_each_covered(&grid, scan, |cell, cell_distance, outcome| {
+                model.evidence(cell_distance, outcome, evidence);
+                changes.extend(map.multiply(cell, evidence));
+            });
+        }
+        Update::Cause(parameters) => {
+            let r = model.resolution();
+            let explained = explain(model, parameters, map, scan).into_iter().enumerate();
+            for (beam, (outcome, causes)) in explained.filter_map(|(b, e)| Some((b, e?))) {
+                let reach = model.reach(outcome);
+                model.footprint().for_each_cell(&grid, &scan.pose, beam, reach, |covered| {
+                    let FootprintCell { cell, cell_distance, across } = covered;
+                    let met = Met { cell_distance, across };
+                    if causes.evidence(parameters, r, met, outcome, evidence) {
+                        changes.extend(map.multiply(cell, evidence));
+                    }
+                });
+            }
+        }
+    }
     merge(changes)
 }
 

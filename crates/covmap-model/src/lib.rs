@@ -26,21 +26,25 @@
 //! ```
 
 mod body;
+mod cause;
 mod footprint;
 mod integrate;
 mod occupancy;
 mod parameters;
+mod product;
 mod registers;
 mod scan_counts;
 mod sensor_model;
 
 pub use body::Body;
+pub use cause::{Causes, Met, opaque};
 pub use footprint::{Footprint, FootprintCell, FootprintError, FootprintRule};
 pub use integrate::{
     cells_under_body, integrate, integrate_body, integrate_literally, intercepted,
 };
 pub use occupancy::{OccupancyGrid, OccupancyParameters};
-pub use parameters::{Linear, ModelError, ModelParameters, NoEchoParameters};
+pub use parameters::{CauseParameters, FreeSpace, NoEchoShare, Update};
+pub use parameters::{Linear, ModelError, ModelParameters, NoEchoParameters, ProductParameters};
 pub use registers::Registers;
 pub use scan_counts::{Counting, ScanCounts};
 pub use sensor_model::{Outcome, SensorModel};

@@ -1,5 +1,13 @@
 //! The parameters of the sensor model.
 
+mod cause;
+mod product;
+
+pub use cause::{CauseParameters, FreeSpace, NoEchoShare};
+pub use product::{NoEchoParameters, ProductParameters};
+
+pub(crate) use cause::MOST_BEARINGS;
+
 use crate::{FootprintError, FootprintRule};
 use covmap::{MAX_BINS, MIN_BINS, short};
 use serde::{Deserialize, Serialize};
@@ -35,25 +43,23 @@ impl Linear {
         self.base + self.per_cell_distance * cell_distance + self.per_range * range
     }
 
-    fn is_monotone(&self) -> bool {
+    pub(crate) fn is_monotone(&self) -> bool {
         [self.base, self.per_cell_distance, self.per_range]
             .iter()
             .all(|v| v.is_finite() && *v >= 0.0)
     }
 }
 
-/// What a beam without an echo says.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct NoEchoParameters {
-    /// Cells up to this distance are taken to be free \[m\]; 0 ignores such beams.
-    pub range: f64,
-    /// The uniform share γ for these cells: larger than for an echo, because a smooth wall
-    /// does not answer either.
-    pub gamma: f64,
+/// How a reading changes the belief: one of two updates, by name.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub enum Update {
+    /// The paper's: every cell of the cone by itself, Eq. (9) and (10).
+    Product(ProductParameters),
+    /// Ours: the map says which surface may have caused the echo.
+    Cause(CauseParameters),
 }
 
-/// The parameters of Eq. (9) and of what the paper leaves open around it.
+/// The parameters of the sensor model, section 3, and of what the paper leaves open around it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelParameters {
@@ -61,22 +67,10 @@ pub struct ModelParameters {
     pub bins: usize,
     /// Cells farther than this from the sensor are not updated \[m\].
     pub usable_range: f64,
-    /// σ(d^l, d) of Eq. (9) where |d^l − d| > r/2.
-    pub sigma_out: Linear,
-    /// σ of Eq. (9) where |d^l − d| ≤ r/2: larger than every `sigma_out` in range.
-    pub sigma_in: f64,
-    /// γ(d^l, d) of Eq. (9), a density level.
-    pub gamma: Linear,
-    /// How far behind the end of a measurement cells are taken to be covered \[m\]:
-    /// the paper's 20 cm.
-    pub behind: f64,
-    /// What a beam without an echo says.
-    pub no_echo: NoEchoParameters,
-    /// Exponent ≤ 1 on the evidence of one measurement: 1 is the paper. Readings that are
-    /// not independent, as many from one pose, make the product of Eq. (8) overconfident.
-    pub tempering: f64,
     /// Which cells a beam covers.
     pub footprint: FootprintRule,
+    /// How a reading changes them.
+    pub update: Update,
 }
 
 /// Why parameters make no model.
@@ -127,6 +121,9 @@ pub enum ModelError {
         /// Half the distance of two bins.
         half_bin: f64,
     },
+    /// The number of bearings is out of range.
+    #[error("model.bearings: {0} is not in 1..={MOST_BEARINGS}")]
+    Bearings(usize),
     /// Nothing but zeros: γ and the Gaussian must leave every bin possible.
     #[error("model.gamma: γ must be positive at distance 0, so that no reading is impossible")]
     NoUniformShare,
@@ -146,35 +143,96 @@ impl ModelError {
     }
 }
 
-impl ModelParameters {
-    /// A B21r's sonars: 11 bins, 3 m usable range, and what a fit on simulated worlds came to
-    /// (`configs/b21r.ron`).
-    pub fn b21r() -> Self {
-        Self {
-            bins: 11,
-            usable_range: 3.0,
-            sigma_out: Linear { base: 0.0523, per_cell_distance: 0.0, per_range: 0.0119 },
-            sigma_in: 0.15,
-            gamma: Linear { base: 0.613, per_cell_distance: 0.33, per_range: 0.33 },
-            behind: 0.085,
-            no_echo: NoEchoParameters { range: 0.5, gamma: 20.0 },
-            tempering: 0.199,
-            footprint: FootprintRule::Sectors { half_angle: 7.5 * std::f64::consts::PI / 180.0 },
+impl Update {
+    /// The update's name.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Product(_) => "Product",
+            Self::Cause(_) => "Cause",
         }
     }
 
-    /// The same sonars with parameters that were chosen by hand on small worlds: each reading
-    /// says much more, and maps are surer than they ought to be.
-    pub fn by_hand() -> Self {
-        Self {
-            sigma_out: Linear { base: 0.06, per_cell_distance: 0.02, per_range: 0.02 },
-            sigma_in: 0.22,
-            gamma: Linear { base: 0.05, per_cell_distance: 0.4, per_range: 0.2 },
-            behind: 0.10,
-            no_echo: NoEchoParameters { range: 1.0, gamma: 1.0 },
-            tempering: 0.7,
-            ..Self::b21r()
+    /// The parameters of Eq. (9), if that is the update.
+    pub fn product(&self) -> Option<&ProductParameters> {
+        match self {
+            Self::Product(product) => Some(product),
+            Self::Cause(_) => None,
         }
+    }
+
+    /// The parameters of the update by cause, if that is the update.
+    pub fn cause(&self) -> Option<&CauseParameters> {
+        match self {
+            Self::Product(_) => None,
+            Self::Cause(cause) => Some(cause),
+        }
+    }
+
+    /// How far behind the end of a measurement cells are taken to be covered \[m\].
+    pub fn behind(&self) -> f64 {
+        match self {
+            Self::Product(product) => product.behind,
+            Self::Cause(cause) => cause.behind,
+        }
+    }
+
+    /// Up to where a beam without an echo says that cells are free \[m\].
+    pub fn no_echo_range(&self) -> f64 {
+        match self {
+            Self::Product(product) => product.no_echo.range,
+            Self::Cause(cause) => cause.no_echo.range,
+        }
+    }
+}
+
+impl ModelParameters {
+    /// A B21r's sonars: 11 bins, 3 m usable range, and the parameters of `configs/b21r.ron`.
+    pub fn b21r() -> Self {
+        Self::product()
+    }
+
+    /// A B21r's sonars with the update by cause, as it was fitted to whole explorations of
+    /// simulated worlds.
+    pub fn by_cause() -> Self {
+        Self {
+            bins: 11,
+            usable_range: 3.0,
+            footprint: FootprintRule::Sectors { half_angle: 7.5 * std::f64::consts::PI / 180.0 },
+            update: Update::Cause(CauseParameters::fitted()),
+        }
+    }
+
+    /// The same sonars with Eq. (9), as it was fitted to the first 200 scans of explorations.
+    pub fn product() -> Self {
+        Self { update: Update::Product(ProductParameters::fitted()), ..Self::by_cause() }
+    }
+
+    /// The same sonars with Eq. (9) and parameters that were chosen by hand on small worlds:
+    /// each reading says much more, and maps are surer than they ought to be.
+    pub fn by_hand() -> Self {
+        Self { update: Update::Product(ProductParameters::by_hand()), ..Self::by_cause() }
+    }
+
+    /// These parameters with others of Eq. (9).
+    #[must_use]
+    pub fn with_product(self, change: impl FnOnce(&mut ProductParameters)) -> Self {
+        let mut product = match self.update {
+            Update::Product(product) => product,
+            Update::Cause(_) => ProductParameters::fitted(),
+        };
+        change(&mut product);
+        Self { update: Update::Product(product), ..self }
+    }
+
+    /// These parameters with others of the update by cause.
+    #[must_use]
+    pub fn with_cause(self, change: impl FnOnce(&mut CauseParameters)) -> Self {
+        let mut cause = match self.update {
+            Update::Cause(cause) => cause,
+            Update::Product(_) => CauseParameters::fitted(),
+        };
+        change(&mut cause);
+        Self { update: Update::Cause(cause), ..self }
     }
 
     /// Checks everything but the footprint.
@@ -182,35 +240,12 @@ impl ModelParameters {
         if !(MIN_BINS..=MAX_BINS).contains(&self.bins) {
             return Err(ModelError::Bins(self.bins));
         }
-        let within = ModelError::within;
-        within("usable_range", self.usable_range, 0.1, 100.0)?;
-        within("sigma_in", self.sigma_in, 1e-3, 10.0)?;
-        within("behind", self.behind, 0.0, 2.0)?;
-        within("no_echo.range", self.no_echo.range, 0.0, self.usable_range)?;
-        within("no_echo.gamma", self.no_echo.gamma, 1e-9, 1e3)?;
-        within("tempering", self.tempering, 1e-3, 1.0)?;
-        for (name, f) in [("sigma_out", &self.sigma_out), ("gamma", &self.gamma)] {
-            if !f.is_monotone() {
-                return Err(ModelError::NotMonotone(name));
-            }
-        }
-        if self.gamma.base <= 0.0 {
-            return Err(ModelError::NoUniformShare);
-        }
-        within("gamma.base", self.gamma.base, 1e-12, 1e3)?;
-        within("gamma.per_cell_distance", self.gamma.per_cell_distance, 0.0, 1e3)?;
-        within("gamma.per_range", self.gamma.per_range, 0.0, 1e3)?;
+        ModelError::within("usable_range", self.usable_range, 0.1, 100.0)?;
         #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let half_bin = 0.5 / (self.bins - 1) as f64;
-        if self.sigma_out.base < half_bin {
-            return Err(ModelError::SigmaBelowHalfBin { sigma: self.sigma_out.base, half_bin });
+        match &self.update {
+            Update::Product(product) => product.validate(self.usable_range, half_bin),
+            Update::Cause(cause) => cause.validate(self.usable_range, half_bin),
         }
-        let range = self.usable_range;
-        let farthest = range + self.behind;
-        let sigma_out = self.sigma_out.at(farthest, range);
-        if self.sigma_in <= sigma_out {
-            return Err(ModelError::SigmaIn { sigma_in: self.sigma_in, sigma_out, range });
-        }
-        Ok(())
     }
 }

@@ -1,9 +1,10 @@
-//! Eq. (9) and (10): what one reading says about one cell.
+//! The sensor model: what readings mean, and what one says about one cell.
 
-use crate::{Footprint, Linear, ModelError, ModelParameters, Registers};
-use covmap::{CoverageMap, Histogram, bin_coverage};
+use crate::cause::Clues;
+use crate::product::mu;
+use crate::{Causes, Footprint, Met, ModelError, ModelParameters, Registers, Update};
+use covmap::{CoverageMap, Histogram};
 use covmap_sonar::{Range, SonarRing};
-use std::f64::consts::PI;
 
 /// What a reading means to the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,16 +15,6 @@ pub enum Outcome {
     Beyond(f64),
     /// No echo: perhaps free space, perhaps a wall that does not answer.
     NoEcho,
-}
-
-/// What Eq. (9) needs to know of a reading.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Reading {
-    /// Where the beam ended \[m\]; infinite if it passed all cells that it says something of.
-    end: f64,
-    /// d of σ(d^l, d) and γ(d^l, d) \[m\].
-    range: f64,
-    gamma: Linear,
 }
 
 /// The sensor model: for every cell and every reading a distribution over coverages.
@@ -102,9 +93,9 @@ impl SensorModel {
     pub fn reach(&self, outcome: Outcome) -> f64 {
         let half = 0.5 * self.resolution;
         match outcome {
-            Outcome::Echo(d) => d + half + self.parameters.behind,
+            Outcome::Echo(d) => d + half + self.parameters.update.behind(),
             Outcome::Beyond(d) => (d - half).min(self.parameters.usable_range),
-            Outcome::NoEcho => self.parameters.no_echo.range,
+            Outcome::NoEcho => self.parameters.update.no_echo_range(),
         }
     }
 
@@ -121,32 +112,10 @@ impl SensorModel {
     ///        1          δ > r/2      just behind
     /// ```
     pub fn mu(&self, delta: f64) -> f64 {
-        (0.5 + delta / self.resolution).clamp(0.0, 1.0)
+        mu(self.resolution, delta)
     }
 
-    /// What an outcome says, for all cells.
-    pub(crate) fn reading(&self, outcome: Outcome) -> Reading {
-        let p = &self.parameters;
-        let passed = |range, gamma| Reading { end: f64::INFINITY, range, gamma };
-        match outcome {
-            Outcome::Echo(d) => Reading { end: d, range: d, gamma: p.gamma },
-            Outcome::Beyond(_) => passed(p.usable_range, p.gamma),
-            Outcome::NoEcho => passed(p.no_echo.range, Linear::constant(p.no_echo.gamma)),
-        }
-    }
-
-    /// μ, σ and γ of Eq. (9) for a cell at `cell_distance` \[m\].
-    #[inline(always)]
-    pub(crate) fn terms(&self, reading: &Reading, cell_distance: f64) -> (f64, f64, f64) {
-        let p = &self.parameters;
-        let delta = cell_distance - reading.end;
-        let inside = delta.abs() <= 0.5 * self.resolution;
-        let sigma_out = p.sigma_out.at(cell_distance, reading.range);
-        let sigma = if inside { p.sigma_in } else { sigma_out };
-        (self.mu(delta), sigma, reading.gamma.at(cell_distance, reading.range))
-    }
-
-    /// Evaluates p(c_l = x | d), Eq. (9), at the coverage x of every bin:
+    /// Evaluates p(c_l = x | d) at the coverage x of every bin. With the paper's update, Eq. (9):
     ///
     /// ```text
     /// p(c_l = x | d) ∝ (γ(d^l, d) + N(μ(d^l − d), σ(d^l, d), x))^κ
@@ -155,28 +124,28 @@ impl SensorModel {
     /// normalised over the bins. `cell_distance` is d^l \[m\]; κ is the tempering exponent,
     /// 1 in the paper. Reading: γ is a density level added to the Gaussian's density.
     ///
+    /// The update by cause says different things in different maps ([`Causes`]); this is what it
+    /// says of a cell on the beam's axis where nothing is known yet.
+    ///
     /// # Panics
     /// If `out` has not one place for each bin.
     pub fn evidence(&self, cell_distance: f64, outcome: Outcome, out: &mut [f64]) {
         let p = &self.parameters;
         assert_eq!(out.len(), p.bins, "one place for each bin");
-        let (mu, sigma, gamma) = self.terms(&self.reading(outcome), cell_distance);
-        // exp ∘ log is four times as fast as libm's pow, which would be most of a fit's baselines and tables.
-        let tempered = |density: f64| match p.tempering {
-            exponent if exponent < 1.0 => libm::exp(exponent * libm::log(density)),
-            _ => density,
-        };
-        // So far from the mean that the Gaussian is below half a unit in the last place of γ,
-        // the density is γ, to the last bit: that takes 6 % off a fit.
-        let far = -2.0 * libm::log(gamma * sigma * f64::EPSILON / 8.0);
-        let tail = tempered(gamma);
-        let mut sum = 0.0;
-        for (bin, o) in out.iter_mut().enumerate() {
-            let z = (bin_coverage(bin, p.bins) - mu) / sigma;
-            *o = if z * z > far { tail } else { tempered(gamma + normal(z, sigma)) };
-            sum += *o;
+        match &p.update {
+            Update::Product(product) => {
+                let reading = product.reading(outcome, p.usable_range);
+                product.evidence(self.resolution, &reading, cell_distance, out);
+            }
+            Update::Cause(cause) => {
+                let causes = match outcome {
+                    Outcome::Echo(_) => Causes::in_an_unknown_map(cause),
+                    _ => Clues::new(cause, self.resolution, 0.0).of_passing(cause.passing(outcome)),
+                };
+                let met = Met { cell_distance, across: 0.5 };
+                causes.evidence(cause, self.resolution, met, outcome, out);
+            }
         }
-        out.iter_mut().for_each(|o| *o /= sum);
     }
 
     /// [`Self::evidence`] as a histogram: a column of Fig. 3.
@@ -187,24 +156,19 @@ impl SensorModel {
     }
 }
 
-/// The density of a Gaussian, N(μ, σ, x) = exp(−z²/2) / (σ·√(2π)) with z = (x − μ)/σ.
-fn normal(z: f64, sigma: f64) -> f64 {
-    libm::exp(-0.5 * z * z) / (sigma * (2.0 * PI).sqrt())
-}
-
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "tests compare exact values")]
 mod tests {
     use super::*;
+    use crate::{Linear, ProductParameters};
     use proptest::prelude::*;
 
     fn model() -> SensorModel {
         SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), 0.1).unwrap()
     }
 
-    fn refuse(change: impl Fn(&mut ModelParameters)) -> ModelError {
-        let mut parameters = ModelParameters::by_hand();
-        change(&mut parameters);
+    fn refuse(change: impl Fn(&mut ProductParameters)) -> ModelError {
+        let parameters = ModelParameters::by_hand().with_product(change);
         SensorModel::new(&parameters, &SonarRing::b21r(), 0.1).unwrap_err()
     }
 
@@ -229,7 +193,9 @@ mod tests {
 
     #[test]
     fn evidence_ends_twenty_centimetres_behind() {
-        let parameters = ModelParameters { behind: 0.2, ..ModelParameters::by_hand() };
+        let parameters = ModelParameters::by_hand().with_product(|product| {
+            product.behind = 0.2;
+        });
         let model = SensorModel::new(&parameters, &SonarRing::b21r(), 0.1).unwrap();
         assert!((model.reach(Outcome::Echo(1.0)) - 1.25).abs() < 1e-12);
         assert_eq!(model.reach(Outcome::NoEcho), 1.0);
@@ -254,7 +220,9 @@ mod tests {
         ));
         assert_eq!(refuse(|p| p.gamma.per_range = -0.1), ModelError::NotMonotone("gamma"));
         assert_eq!(refuse(|p| p.gamma.base = 0.0), ModelError::NoUniformShare);
-        assert_eq!(refuse(|p| p.bins = 1), ModelError::Bins(1));
+        let one_bin = ModelParameters { bins: 1, ..ModelParameters::by_hand() };
+        let refused = SensorModel::new(&one_bin, &SonarRing::b21r(), 0.1).unwrap_err();
+        assert_eq!(refused, ModelError::Bins(1));
         let nan = Linear { base: f64::NAN, per_cell_distance: 0.0, per_range: 0.0 };
         assert_eq!(refuse(|p| p.sigma_out = nan), ModelError::NotMonotone("sigma_out"));
         assert!(matches!(refuse(|p| p.no_echo.range = 9.0), ModelError::OutOfRange { .. }));
@@ -265,7 +233,7 @@ mod tests {
         fn evidence_is_a_distribution_and_never_rules_anything_out(
             distance in 0.0..3.5f64, range in 0.0..3.0f64, tempering in 0.1..=1.0f64
         ) {
-            let parameters = ModelParameters { tempering, ..ModelParameters::by_hand() };
+            let parameters = ModelParameters::by_hand().with_product(|product| { product.tempering = tempering; });
             let model = SensorModel::new(&parameters, &SonarRing::b21r(), 0.1).unwrap();
             for outcome in [Outcome::Echo(range), Outcome::Beyond(range + 3.0), Outcome::NoEcho] {
                 let mut p = [0.0; 11];

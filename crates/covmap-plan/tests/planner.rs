@@ -4,8 +4,7 @@
 use covmap::{Cell, CoverageMap, Grid, Raster};
 use covmap_gain::{BeamError, GAIN_TOLERANCE, Stencil, expected_information_gain};
 use covmap_model::{
-    FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel, integrate,
-    integrate_body,
+    FootprintRule, Linear, ModelParameters, SensorModel, integrate, integrate_body,
 };
 use covmap_plan::{CellStatus, Planner, PlannerError, PlannerParameters, Strategy};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
@@ -28,7 +27,9 @@ fn setting(strategy: Strategy, bins: usize, change: impl Fn(&mut PlannerParamete
         ModelParameters { bins, usable_range: 1.5, ..ModelParameters::by_hand() };
     if bins < 11 {
         // Few bins cannot show a narrow Gaussian.
-        (model_parameters.sigma_out.base, model_parameters.sigma_in) = (0.12, 0.3);
+        model_parameters = model_parameters.with_product(|product| {
+            (product.sigma_out.base, product.sigma_in) = (0.12, 0.3);
+        });
     }
     let mut parameters = PlannerParameters { strategy, ..PlannerParameters::standard() };
     change(&mut parameters);
@@ -83,13 +84,15 @@ fn some_models() -> impl Generator<Value = ModelParameters> {
             let sectors = FootprintRule::Sectors { half_angle };
             ModelParameters {
                 usable_range: 1.5,
-                gamma: Linear { base, per_cell_distance, per_range },
-                behind,
-                tempering,
-                no_echo: NoEchoParameters { range, ..by_hand.no_echo },
                 footprint: if cones_wanted { cones } else { sectors },
                 ..by_hand
             }
+            .with_product(|product| {
+                product.gamma = Linear { base, per_cell_distance, per_range };
+                product.behind = behind;
+                product.tempering = tempering;
+                product.no_echo.range = range;
+            })
         },
     )
 }
@@ -192,7 +195,7 @@ proptest! {
     fn the_fast_gain_is_the_literal_one_where_readings_say_little(
         scans in some_scans(), tempering in 0.05..0.3f64
     ) {
-        let model = ModelParameters { usable_range: 1.5, tempering, ..ModelParameters::b21r() };
+        let model = ModelParameters { usable_range: 1.5, ..ModelParameters::b21r() }.with_product(|product| { product.tempering = tempering; });
         let parameters = PlannerParameters { strategy: Strategy::Ig, ..PlannerParameters::standard() };
         let s = setting_of(&model, &SonarRing::b21r(), parameters);
         check_gains_after_every_scan(s, scans)?;
@@ -203,7 +206,7 @@ proptest! {
         model in some_models(), usable_range in prop::sample::select(vec![3.0, 4.05]),
         scans in prop::collection::vec((-1.0..1.0f64, -0.7..0.7f64, some_ranges()), 1..3)
     ) {
-        let model = ModelParameters { usable_range, sigma_in: 0.3, ..model };
+        let model = ModelParameters { usable_range, ..model }.with_product(|product| { product.sigma_in = 0.3; });
         let parameters = PlannerParameters { strategy: Strategy::Ig, ..PlannerParameters::standard() };
         let s = setting_of(&model, &SonarRing::b21r(), parameters);
         check_gains_after_every_scan(s, scans)?;

@@ -13,6 +13,7 @@ use crate::say;
 use anyhow::{Context, Result};
 use covmap_explore::{Config, Limits, Mission};
 use covmap_io::{Chart, ChartAxis, ChartPoint, Figure, Panel, Series};
+use covmap_model::Update;
 use std::fmt::{self, Display, Formatter};
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -173,10 +174,21 @@ fn adapted(config: &Config, point: Point) -> Config {
     (model.bins, model.usable_range) = (point.bins, point.range);
     #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let half_bin = 0.5 / (point.bins - 1) as f64;
-    model.sigma_out.base = model.sigma_out.base.max(half_bin);
-    let farthest = model.sigma_out.at(point.range + model.behind, point.range);
-    model.sigma_in = model.sigma_in.max(1.01 * farthest);
-    model.no_echo.range = model.no_echo.range.min(point.range);
+    match &mut model.update {
+        Update::Product(product) => {
+            product.sigma_out.base = product.sigma_out.base.max(half_bin);
+            let farthest = product.sigma_out.at(point.range + product.behind, point.range);
+            product.sigma_in = product.sigma_in.max(1.01 * farthest);
+            product.no_echo.range = product.no_echo.range.min(point.range);
+        }
+        Update::Cause(cause) => {
+            for sigma in [&mut cause.sigma_in.base, &mut cause.sigma_behind, &mut cause.free.sigma]
+            {
+                *sigma = sigma.max(half_bin);
+            }
+            cause.no_echo.range = cause.no_echo.range.min(point.range);
+        }
+    }
     config
 }
 

@@ -3,7 +3,7 @@
 //! What the library's code is measured against; it shares the footprint with it, and no more.
 
 use covmap::{Grid, PROBABILITY_FLOOR};
-use covmap_model::{ModelParameters, Outcome, SensorModel};
+use covmap_model::{Outcome, ProductParameters, SensorModel};
 use covmap_sonar::Scan;
 use std::f64::consts::PI;
 
@@ -50,7 +50,9 @@ impl LiteralMap {
 
 /// p(c_l = x | d), Eq. (9), not normalised: the product is.
 fn evaluate(model: &SensorModel, cell_distance: f64, outcome: Outcome, evidence: &mut [f64]) {
-    let p = model.parameters();
+    let Some(p) = model.parameters().update.product() else {
+        return model.evidence(cell_distance, outcome, evidence);
+    };
     let (mu, sigma, gamma) = in_cell(model, p, cell_distance, outcome);
     let bins = evidence.len();
     for (bin, e) in evidence.iter_mut().enumerate() {
@@ -63,7 +65,7 @@ fn evaluate(model: &SensorModel, cell_distance: f64, outcome: Outcome, evidence:
 /// μ, σ and γ of Eq. (9).
 fn in_cell(
     model: &SensorModel,
-    p: &ModelParameters,
+    p: &ProductParameters,
     cell_distance: f64,
     outcome: Outcome,
 ) -> (f64, f64, f64) {
@@ -76,7 +78,8 @@ fn in_cell(
             (model.mu(delta), sigma, p.gamma.at(cell_distance, d))
         }
         Outcome::Beyond(_) => {
-            (0.0, free(p.usable_range), p.gamma.at(cell_distance, p.usable_range))
+            let range = model.parameters().usable_range;
+            (0.0, free(range), p.gamma.at(cell_distance, range))
         }
         Outcome::NoEcho => (0.0, free(p.no_echo.range), p.no_echo.gamma),
     }

@@ -45,9 +45,9 @@ fn a_fit_writes_a_configuration_that_explores() {
     assert_eq!(report["path"].as_array().unwrap().len(), 24);
     assert_eq!(report["profiles"].as_array().unwrap().len(), 2);
     let config: Config = covmap_io::read_ron(shell.path("fitted/config.ron")).unwrap();
-    assert!(
-        (config.model.tempering - report["after"]["tempering"].as_f64().unwrap()).abs() < 1e-12
-    );
+    let tempering = config.model.update.product().unwrap().tempering;
+    let reported = &report["after"]["update"]["Product"]["tempering"];
+    assert!((tempering - reported.as_f64().unwrap()).abs() < 1e-12);
     let explore = "explore room.ron --config fitted/config.ron --resolution 0.2 --max-scans 2";
     shell.expect(explore, 3);
     // The same file gives the same fit.

@@ -8,7 +8,9 @@ mod tallies;
 
 use covmap::{CoverageMap, Grid, Raster};
 use covmap_explore::{Config, Limits, Mission, RobotParameters};
-use covmap_model::{FootprintRule, Linear, ModelParameters, NoEchoParameters};
+use covmap_model::{
+    FootprintRule, Linear, ModelParameters, NoEchoParameters, ProductParameters, Update,
+};
 use covmap_plan::{PlannerParameters, StallRule, Strategy};
 use covmap_sonar::{RingSpecification, SensorSpecification};
 use nalgebra::{Isometry2, Point2};
@@ -46,13 +48,15 @@ fn mission(cells: usize, directions: &[f64], range: f64, limits: Limits) -> Miss
         model: ModelParameters {
             bins: 3,
             usable_range: range,
-            sigma_out: Linear { base: 0.25, per_cell_distance: 0.0, per_range: 0.0 },
-            sigma_in: 0.6,
-            gamma: Linear { base: 0.1, per_cell_distance: 0.0, per_range: 0.0 },
-            behind: 0.0,
-            no_echo: NoEchoParameters { range, gamma: 0.1 },
-            tempering: 1.0,
             footprint: FootprintRule::Cones { half_angle: 0.0 },
+            update: Update::Product(ProductParameters {
+                sigma_out: Linear { base: 0.25, per_cell_distance: 0.0, per_range: 0.0 },
+                sigma_in: 0.6,
+                gamma: Linear { base: 0.1, per_cell_distance: 0.0, per_range: 0.0 },
+                behind: 0.0,
+                no_echo: NoEchoParameters { range, gamma: 0.1 },
+                tempering: 1.0,
+            }),
         },
         planner: PlannerParameters {
             strategy: Strategy::Cl,

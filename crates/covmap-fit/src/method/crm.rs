@@ -100,7 +100,9 @@ impl Crm {
         rings: &mut Rings,
         outcome: Outcome,
     ) {
-        let (bins, tempering) = (map.bins(), model.parameters().tempering);
+        let update = &model.parameters().update;
+        let tempering = update.product().map_or(1.0, |product| product.tempering);
+        let bins = map.bins();
         let keep = self.keep(map, rings);
         let heard = |k: usize| self.heard(outcome, ring_distance(k, model.resolution()));
         let onwards = self.onwards(&keep, outcome, heard);

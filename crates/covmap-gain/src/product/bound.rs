@@ -210,10 +210,11 @@ impl Members {
 
 /// Members of all families.
 fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> Vec<Members> {
-    let (half, behind) = (0.5 * model.resolution(), model.parameters().behind);
+    let (half, behind) = (0.5 * model.resolution(), model.parameters().update.behind());
     // Shifted by a quarter of its width, a Gaussian gains about the same.
+    let sigma_in = model.parameters().update.product().map_or(1.0, |product| product.sigma_in);
     #[allow(clippy::cast_possible_truncation, reason = "below 257")]
-    let shifts = (2.0 / model.parameters().sigma_in).ceil().clamp(8.0, 256.0) as i32;
+    let shifts = (2.0 / sigma_in).ceil().clamp(8.0, 256.0) as i32;
     let mut families = vec![Members::default(); NO_ECHO + 1];
     let echo = |distance: f64, k: usize| Evidence::new(model, distance, Outcome::Echo(ranges[k]));
     // In a band, its first, last and middle ring; and the second: at the sensor itself half of what

@@ -30,19 +30,23 @@
 use super::close;
 use super::corridor::{Corridor, PLAIN};
 use covmap_gain::{RangePrediction, Upkeep};
-use covmap_model::{FootprintRule, Linear, ModelParameters, NoEchoParameters};
+use covmap_model::{
+    FootprintRule, Linear, ModelParameters, NoEchoParameters, ProductParameters, Update,
+};
 
 fn model() -> ModelParameters {
     ModelParameters {
         bins: 3,
         usable_range: 2.0,
-        sigma_out: Linear { base: 0.25, per_cell_distance: 0.01, per_range: 0.03 },
-        sigma_in: 0.6,
-        gamma: Linear { base: 0.1, per_cell_distance: 0.05, per_range: 0.02 },
-        behind: 0.0,
-        no_echo: NoEchoParameters { range: 2.0, gamma: 2.0 },
-        tempering: 1.0,
         footprint: FootprintRule::Cones { half_angle: 0.0 },
+        update: Update::Product(ProductParameters {
+            sigma_out: Linear { base: 0.25, per_cell_distance: 0.01, per_range: 0.03 },
+            sigma_in: 0.6,
+            gamma: Linear { base: 0.1, per_cell_distance: 0.05, per_range: 0.02 },
+            behind: 0.0,
+            no_echo: NoEchoParameters { range: 2.0, gamma: 2.0 },
+            tempering: 1.0,
+        }),
     }
 }
 

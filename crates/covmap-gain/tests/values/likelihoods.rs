@@ -7,7 +7,10 @@ use covmap_gain::{
     BeamStencil, GainCache, RangeLikelihood, Stencil, StencilCell, Upkeep, ViewPoints,
     range_likelihood, reflection,
 };
-use covmap_model::{FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel};
+use covmap_model::{
+    FootprintRule, Linear, ModelParameters, NoEchoParameters, ProductParameters, SensorModel,
+    Update,
+};
 use covmap_sonar::{Beam, SonarRing};
 use nalgebra::{Isometry2, Point2};
 
@@ -85,12 +88,14 @@ fn four_beams() -> (ModelParameters, SonarRing) {
     });
     let parameters = ModelParameters {
         usable_range: 3.0,
-        behind: 0.2,
-        sigma_out: Linear { base: 0.1, per_cell_distance: 0.0, per_range: 0.0 },
-        no_echo: NoEchoParameters { range: 2.0, gamma: 1.0 },
         footprint: FootprintRule::Sectors { half_angle: 45f64.to_radians() },
         ..ModelParameters::by_hand()
-    };
+    }
+    .with_product(|product| {
+        product.behind = 0.2;
+        product.sigma_out = Linear { base: 0.1, per_cell_distance: 0.0, per_range: 0.0 };
+        product.no_echo = NoEchoParameters { range: 2.0, gamma: 1.0 };
+    });
     let ring = SonarRing::new(beams.to_vec()).unwrap();
     (parameters, ring)
 }
@@ -130,13 +135,15 @@ fn corridor(no_echo: f64) -> Corridor {
     let model = ModelParameters {
         bins: 11,
         usable_range: 4.0,
-        sigma_out: constant(0.1),
-        sigma_in: 0.2,
-        gamma: constant(0.1),
-        behind: 0.0,
-        no_echo: NoEchoParameters { range: no_echo, gamma: 0.2 },
-        tempering: 1.0,
         footprint: FootprintRule::Cones { half_angle: 0.0 },
+        update: Update::Product(ProductParameters {
+            sigma_out: constant(0.1),
+            sigma_in: 0.2,
+            gamma: constant(0.1),
+            behind: 0.0,
+            no_echo: NoEchoParameters { range: no_echo, gamma: 0.2 },
+            tempering: 1.0,
+        }),
     };
     Corridor::new(5, &[0.0], &model, PLAIN, Upkeep::OnDemand)
 }

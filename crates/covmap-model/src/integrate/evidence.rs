@@ -1,7 +1,7 @@
 //! Eq. (9) as it runs: many cells side by side, in f32.
 
-use crate::sensor_model::Reading;
-use crate::{ModelParameters, SensorModel};
+use crate::ProductParameters;
+use crate::product::Reading;
 use covmap::bin_coverage;
 use covmap::lanes::{LANES, Lanes, TOGETHER, exp, flat, ln, map, rows};
 
@@ -19,28 +19,38 @@ pub(crate) struct Terms {
 impl Terms {
     /// Adds cells for which a model means the same by a reading, by their distances \[m\].
     #[inline(always)]
-    pub(crate) fn extend(&mut self, model: &SensorModel, reading: &Reading, distances: &[f64]) {
-        let first = self.mu.len();
-        let count = first + distances.len();
-        [&mut self.mu, &mut self.sigma, &mut self.gamma]
-            .into_iter()
-            .for_each(|terms| terms.resize(count, 1.0));
-        let terms = self.mu[first..].iter_mut().zip(&mut self.sigma[first..]);
-        for (((mu, sigma), gamma), d) in terms.zip(&mut self.gamma[first..]).zip(distances) {
-            let (m, s, g) = model.terms(reading, *d);
+    pub(crate) fn extend(
+        &mut self,
+        (parameters, resolution): (&ProductParameters, f64),
+        reading: &Reading,
+        distances: impl Iterator<Item = f64>,
+    ) {
+        for distance in distances {
+            let (mu, sigma, gamma) = parameters.terms(resolution, reading, distance);
             #[allow(clippy::cast_possible_truncation, reason = "computed in f32 for speed")]
-            ((*mu, *sigma, *gamma) = (m as f32, s as f32, g.clamp(1e-30, 1e30) as f32));
+            {
+                self.mu.push(mu as f32);
+                self.sigma.push(sigma as f32);
+                self.gamma.push(gamma.clamp(1e-30, 1e30) as f32);
+            }
         }
     }
 
-    /// [`SensorModel::evidence`] of a block, not normalised: the largest weight of a cell lies
+    /// Adds cells of which it does not matter what is said, up to so many in all.
+    pub(crate) fn fill(&mut self, count: usize) {
+        [&mut self.mu, &mut self.sigma, &mut self.gamma]
+            .into_iter()
+            .for_each(|terms| terms.resize(count, 1.0));
+    }
+
+    /// [`crate::SensorModel::evidence`] of a block, not normalised: the largest weight of a cell lies
     /// between ½ and 2. Each weight is within 1e-5 of the literal one, in units of itself,
     /// where that is more than 1e-12 of the largest.
     #[inline(always)]
     pub(crate) fn evidence(
         &self,
         block: usize,
-        p: &ModelParameters,
+        (bins, tempering): (usize, f64),
         out: &mut [[Lanes; TOGETHER]],
     ) {
         let block = |terms: &[f32]| terms.as_chunks::<LANES>().0[block];
@@ -55,7 +65,7 @@ impl Terms {
             peak[lane] = top * scale;
         }
         #[allow(clippy::cast_possible_truncation, reason = "computed in f32 for speed")]
-        let (bins, tempering) = (p.bins, p.tempering as f32);
+        let tempering = tempering as f32;
         for (first, o) in (0..).step_by(TOGETHER).zip(out) {
             let mut z = [[0.0; LANES]; TOGETHER];
             for (bin, z) in (first..).zip(&mut z) {

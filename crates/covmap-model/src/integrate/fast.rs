@@ -1,11 +1,12 @@
 //! Eq. (8) as it runs: the cells of a scan in blocks, side by side.
 
+use super::by_cause::explain;
+use super::cause_terms::CauseTerms;
 use super::evidence::Terms;
-use crate::footprint::FootprintCell;
-use crate::{Outcome, SensorModel};
+use crate::{FootprintCell, Met, ModelParameters, Outcome, SensorModel, Update};
 use covmap::lanes::LANES;
 use covmap::{Cell, Change, CoverageMap, EvidenceBlock, Grid};
-use covmap_sonar::Scan;
+use covmap_sonar::{Range, Scan};
 use pulp::{Simd, WithSimd};
 
 /// Integrates a scan into a map, Eq. (8): the posterior of every covered cell is multiplied
@@ -39,10 +40,16 @@ struct Integration<'a> {
     grid: Grid,
     touched: Touched,
     /// The cells of all beams by their row-major index, in blocks of [`LANES`], and no cell
-    /// twice in a block; where they are in `touched`; and their distances \[m\].
+    /// twice in a block; where they are in `touched`; and how their beams meet them.
     cells: Vec<u32>,
     places: Vec<u32>,
-    distances: Vec<f64>,
+    met: Vec<Met>,
+}
+
+/// What a scan says of its cells, by one of the updates.
+enum Said {
+    Product(Terms),
+    Cause(CauseTerms),
 }
 
 impl WithSimd for Integration<'_> {
@@ -50,8 +57,8 @@ impl WithSimd for Integration<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(mut self, _: S) -> Vec<Change> {
-        let terms = self.collect();
-        self.multiply(&terms);
+        let said = self.collect();
+        self.multiply(&said);
         self.touched.changes()
     }
 }
@@ -65,37 +72,74 @@ impl<'a> Integration<'a> {
         let touched = Touched::new(low, high);
         let room = touched.slots.len();
         let (cells, places) = (Vec::with_capacity(room), Vec::with_capacity(room));
-        let distances = Vec::with_capacity(room);
-        Self { model, map, scan, grid, touched, cells, places, distances }
+        let met = Vec::with_capacity(room);
+        Self { model, map, scan, grid, touched, cells, places, met }
     }
 
     /// All cells that the scan changes, and what it says of each.
     #[inline(always)]
-    fn collect(&mut self) -> Terms {
-        let mut terms = Terms::default();
-        let (model, scan, grid) = (self.model, self.scan, self.grid);
-        for (beam, range) in scan.ranges.iter().enumerate() {
-            let Some(outcome) = model.outcome(*range) else { continue };
-            let first = self.cells.len();
-            let reach = model.reach(outcome);
-            model.footprint().for_each_cell(&grid, &scan.pose, beam, reach, |c| self.add(c));
-            terms.extend(model, &model.reading(outcome), &self.distances[first..]);
+    fn collect(&mut self) -> Said {
+        let (model, resolution) = (self.model, self.model.resolution());
+        let ModelParameters { bins, usable_range, update, .. } = model.parameters();
+        match update {
+            Update::Product(parameters) => {
+                let mut terms = Terms::default();
+                let outcome = |(beam, range): (usize, &Range)| Some((beam, model.outcome(*range)?));
+                for (beam, outcome) in self.scan.ranges.iter().enumerate().filter_map(outcome) {
+                    let first = self.cells.len();
+                    self.for_each_met(beam, outcome, |this, cell, met| {
+                        this.add(cell, met);
+                    });
+                    let reading = parameters.reading(outcome, *usable_range);
+                    let distances = self.met[first..].iter().map(|met| met.cell_distance);
+                    terms.extend((parameters, resolution), &reading, distances);
+                }
+                self.fill_block();
+                terms.fill(self.cells.len());
+                Said::Product(terms)
+            }
+            Update::Cause(parameters) => {
+                let mut terms = CauseTerms::new(parameters, *bins);
+                let explained = explain(model, parameters, self.map, self.scan);
+                for (beam, explained) in explained.iter().enumerate() {
+                    let Some((outcome, causes)) = explained else { continue };
+                    self.for_each_met(beam, *outcome, |this, covered, met| {
+                        let shares = parameters.shares(resolution, met, *outcome, causes);
+                        if !shares.are_nothing() && this.add(covered, met) {
+                            terms.fill(this.cells.len() - 1);
+                            terms.push(&shares);
+                        }
+                    });
+                }
+                self.fill_block();
+                terms.fill(self.cells.len());
+                Said::Cause(terms)
+            }
         }
-        let first = self.cells.len();
-        self.fill_block();
-        terms.extend(model, &model.reading(Outcome::NoEcho), &self.distances[first..]);
-        terms
     }
 
-    /// Adds a cell to the present block, or to the next one if it is in this one already, from
-    /// another beam.
+    /// Visits the cells that a beam covers.
     #[inline(always)]
-    fn add(&mut self, covered: FootprintCell) {
-        let Some(index) = self.grid.index(covered.cell) else { return };
-        if !self.map.is_changeable(index) {
-            return;
-        }
-        let place = self.touched.place(covered.cell);
+    fn for_each_met(
+        &mut self,
+        beam: usize,
+        outcome: Outcome,
+        mut visit: impl FnMut(&mut Self, Cell, Met),
+    ) {
+        let (model, grid, pose) = (self.model, self.grid, self.scan.pose);
+        let reach = model.reach(outcome);
+        model.footprint().for_each_cell(&grid, &pose, beam, reach, |covered| {
+            let FootprintCell { cell, cell_distance, across } = covered;
+            visit(self, cell, Met { cell_distance, across });
+        });
+    }
+    /// Adds a cell to the present block, or to the next one if it is in this one already, from
+    /// another beam. Returns whether it did: not one that nothing can change.
+    #[inline(always)]
+    fn add(&mut self, cell: Cell, met: Met) -> bool {
+        let index = self.grid.index(cell).filter(|index| self.map.is_changeable(*index));
+        let Some(index) = index else { return false };
+        let place = self.touched.place(cell);
         let block = |count: usize| 1 + count / LANES;
         let last_block = &mut self.touched.slots[place].block;
         if *last_block as usize == block(self.cells.len()) {
@@ -107,7 +151,8 @@ impl<'a> Integration<'a> {
             self.cells.push(index as u32);
             self.places.push(place as u32);
         }
-        self.distances.push(covered.cell_distance);
+        self.met.push(met);
+        true
     }
 
     /// Leaves the rest of the present block empty.
@@ -115,17 +160,21 @@ impl<'a> Integration<'a> {
         let count = self.cells.len().next_multiple_of(LANES);
         self.cells.resize(count, EvidenceBlock::NO_CELL);
         self.places.resize(count, 0);
-        self.distances.resize(count, 0.0);
+        self.met.resize(count, Met { cell_distance: 0.0, across: 0.5 });
     }
 
     #[inline(always)]
-    fn multiply(&mut self, terms: &Terms) {
-        let parameters = self.model.parameters();
+    fn multiply(&mut self, said: &Said) {
+        let ModelParameters { bins, update, .. } = self.model.parameters();
+        let tempering = update.product().map_or(1.0, |product| product.tempering);
         let Self { map, touched, cells, places, .. } = self;
         let mut block = EvidenceBlock::new(map.bins());
         let (cells, places) = (cells.as_chunks::<LANES>().0, places.as_chunks::<LANES>().0);
         for (number, (cells, places)) in cells.iter().zip(places).enumerate() {
-            terms.evidence(number, parameters, block.weights());
+            match said {
+                Said::Product(terms) => terms.evidence(number, (*bins, tempering), block.weights()),
+                Said::Cause(terms) => terms.evidence(number, block.weights()),
+            }
             map.multiply_block(&mut block, cells, |lane, before, after| {
                 touched.note(places[lane] as usize, before, after);
             });
@@ -194,7 +243,7 @@ impl Touched {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{FootprintRule, Linear, ModelParameters, NoEchoParameters, integrate_literally};
+    use crate::{FootprintRule, Linear, NoEchoParameters, ProductParameters, integrate_literally};
     use covmap_sonar::{Range, SonarRing};
     use nalgebra::{Isometry2, Point2, Vector2};
     use proptest::prelude::*;
@@ -230,13 +279,15 @@ mod tests {
                 let parameters = ModelParameters {
                     bins,
                     usable_range: 1.5,
-                    sigma_in: sigma_out.at(1.8, 1.5) + above,
-                    sigma_out,
-                    gamma,
-                    behind,
-                    no_echo: NoEchoParameters { range, gamma: no_echo },
-                    tempering,
                     footprint,
+                    update: Update::Product(ProductParameters {
+                        sigma_in: sigma_out.at(1.8, 1.5) + above,
+                        sigma_out,
+                        gamma,
+                        behind,
+                        no_echo: NoEchoParameters { range, gamma: no_echo },
+                        tempering,
+                    }),
                 };
                 SensorModel::new(&parameters, &SonarRing::b21r(), 0.1).unwrap()
             },

@@ -10,7 +10,7 @@
 use super::{all_close, at, close, grid, model, parameters, scan};
 use covmap::CoverageMap;
 use covmap_model::{
-    ModelError, ModelParameters, NoEchoParameters, Outcome, SensorModel, integrate,
+    ModelError, NoEchoParameters, Outcome, ProductParameters, SensorModel, integrate,
     integrate_literally,
 };
 use covmap_sonar::Range;
@@ -74,7 +74,9 @@ fn an_echo_from_beyond_the_usable_range_passes_all_before_it() {
 #[test]
 fn tempering_is_an_exponent() {
     // The square roots of the densities of the first test.
-    let model = model(&ModelParameters { tempering: 0.5, ..parameters() });
+    let model = model(&parameters().with_product(|product| {
+        product.tempering = 0.5;
+    }));
     check(&model, 2.0, Outcome::Echo(4.0), [0.445_919_05, 0.333_710_67, 0.220_370_28]);
 }
 
@@ -138,9 +140,8 @@ fn a_map_is_the_product_of_what_all_readings_say() {
 fn the_end_cell_must_be_the_least_certain() {
     // The largest σ outside is that of 5 + 2 m and 5 m: .25 + .07 + .15 = .47.
     let ring = covmap_sonar::SonarRing::new(vec![super::beam(0.0, 0.0, 0.0)]).unwrap();
-    let with = |change: fn(&mut ModelParameters)| {
-        let mut parameters = parameters();
-        change(&mut parameters);
+    let with = |change: fn(&mut ProductParameters)| {
+        let parameters = parameters().with_product(change);
         SensorModel::new(&parameters, &ring, 1.0).map(|_| ())
     };
     assert!(matches!(with(|p| p.sigma_in = 0.469), Err(ModelError::SigmaIn { .. })));

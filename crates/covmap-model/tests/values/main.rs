@@ -3,11 +3,15 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod baselines;
+mod cause;
 mod equations;
 mod footprints;
 
 use covmap::{Cell, Grid};
-use covmap_model::{FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel};
+use covmap_model::{
+    FootprintRule, Linear, ModelParameters, NoEchoParameters, ProductParameters, SensorModel,
+    Update,
+};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
 
@@ -31,13 +35,15 @@ fn parameters() -> ModelParameters {
     ModelParameters {
         bins: 3,
         usable_range: 5.0,
-        sigma_out: Linear { base: 0.25, per_cell_distance: 0.01, per_range: 0.03 },
-        sigma_in: 0.6,
-        gamma: Linear { base: 0.1, per_cell_distance: 0.05, per_range: 0.02 },
-        behind: 2.0,
-        no_echo: NoEchoParameters { range: 3.0, gamma: 2.0 },
-        tempering: 1.0,
         footprint: FootprintRule::Cones { half_angle: 0.0 },
+        update: Update::Product(ProductParameters {
+            sigma_out: Linear { base: 0.25, per_cell_distance: 0.01, per_range: 0.03 },
+            sigma_in: 0.6,
+            gamma: Linear { base: 0.1, per_cell_distance: 0.05, per_range: 0.02 },
+            behind: 2.0,
+            no_echo: NoEchoParameters { range: 3.0, gamma: 2.0 },
+            tempering: 1.0,
+        }),
     }
 }
 

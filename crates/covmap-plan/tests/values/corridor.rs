@@ -1,7 +1,10 @@
 //! A corridor that is one cell wide, and a planner that is told of it cell by cell.
 
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
-use covmap_model::{FootprintRule, Linear, ModelParameters, NoEchoParameters, SensorModel};
+use covmap_model::{
+    FootprintRule, Linear, ModelParameters, NoEchoParameters, ProductParameters, SensorModel,
+    Update,
+};
 use covmap_plan::{CellStatus, Decision, Planner, PlannerParameters, StallRule, Strategy};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
@@ -22,13 +25,15 @@ pub(crate) fn two_bins(range: f64) -> ModelParameters {
     ModelParameters {
         bins: 2,
         usable_range: range,
-        sigma_out: Linear { base: 0.5, per_cell_distance: 0.0, per_range: 0.0 },
-        sigma_in: 0.6,
-        gamma: Linear { base: 0.1, per_cell_distance: 0.0, per_range: 0.0 },
-        behind: 0.0,
-        no_echo: NoEchoParameters { range, gamma: 0.2 },
-        tempering: 1.0,
         footprint: FootprintRule::Cones { half_angle: 0.0 },
+        update: Update::Product(ProductParameters {
+            sigma_out: Linear { base: 0.5, per_cell_distance: 0.0, per_range: 0.0 },
+            sigma_in: 0.6,
+            gamma: Linear { base: 0.1, per_cell_distance: 0.0, per_range: 0.0 },
+            behind: 0.0,
+            no_echo: NoEchoParameters { range, gamma: 0.2 },
+            tempering: 1.0,
+        }),
     }
 }
 

@@ -82,7 +82,9 @@ fn a_band_as_near_as_the_closest_distance_is_still_one() {
 fn no_band_goes_beyond_the_usable_range() {
     // A wall 4 m from cell 0 is seen from there, and what is behind it, 5 m away, is no reason.
     let mut model = two_bins(4.0);
-    (model.behind, model.no_echo.range) = (1.0, 1.0);
+    model = model.with_product(|product| {
+        (product.behind, product.no_echo.range) = (1.0, 1.0);
+    });
     let mut parameters = plain(Strategy::Cl);
     parameters.stall_rule = StallRule::Banded { first: 50.0, closest: 0.5 };
     let mut corridor = Corridor::new(6, &[0.0], &model, &parameters);

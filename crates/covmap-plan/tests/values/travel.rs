@@ -38,7 +38,10 @@ fn candidates(change: impl Fn(&mut PlannerParameters), bin: usize, radius: f64) 
 
 fn corridor(change: impl Fn(&mut PlannerParameters), bin: usize, radius: f64) -> Corridor {
     let mut model = two_bins(1.0);
-    (model.bins, model.sigma_out.base, model.sigma_in) = (11, 0.1, 0.2);
+    model.bins = 11;
+    model = model.with_product(|product| {
+        (product.sigma_out.base, product.sigma_in) = (0.1, 0.2);
+    });
     let mut parameters = plain(Strategy::Cl);
     parameters.entropy_threshold = 0.6;
     change(&mut parameters);

@@ -182,7 +182,7 @@ mod tests {
     use crate::figures::partial_cells::Series;
     use crate::paper::runs::Units;
     use crate::paper::trial::{Verdict, check};
-    use covmap_model::ModelParameters;
+    use covmap_model::{ModelParameters, ProductParameters};
     use covmap_sonar::SonarRing;
 
     fn cell(good: usize, of: usize, peak: usize) -> PartialCell {
@@ -215,10 +215,12 @@ mod tests {
 
     #[test]
     fn claim_3_looks_at_the_model() {
-        let model = |change: fn(&mut ModelParameters)| {
-            let mut parameters =
-                ModelParameters { tempering: 1.0, behind: 0.2, ..ModelParameters::b21r() };
-            change(&mut parameters);
+        let model = |change: fn(&mut ProductParameters)| {
+            let parameters = ModelParameters::product().with_product(|product| {
+                product.tempering = 1.0;
+                product.behind = 0.2;
+                change(product);
+            });
             SensorModel::new(&parameters, &SonarRing::b21r(), 0.1).unwrap()
         };
         check(claim_3(&model(|_| ())), Verdict::Reproduced);

@@ -204,7 +204,8 @@ impl<'a> Builder<'a> {
         let (nearest, farthest) = (self.distances[0], self.distances[self.distances.len() - 1]);
         let middle = 0.5 * (nearest + farthest);
         let at = |distance, range| Evidence::new(model, distance, Outcome::Echo(range));
-        let shift = shift(&model.parameters().gamma, middle);
+        let gamma = model.parameters().update.product().map(|product| product.gamma);
+        let shift = gamma.and_then(|gamma| shift(&gamma, middle));
         let in_range = Nodes::few(ranges, shift, probes, |range| at(middle, range));
         let needed = |range: &f64| {
             Nodes::few(&self.distances, None, probes, |distance| at(distance, *range)).at.len()

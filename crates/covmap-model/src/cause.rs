@@ -1,0 +1,278 @@
+//! The update by cause: which surface of the map answered, and what that says of each cell.
+
+use crate::parameters::MOST_BEARINGS;
+use crate::{CauseParameters, Outcome};
+use covmap::bin_coverage;
+
+/// A cell as a beam meets it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Met {
+    /// d^l, the distance from the sensor to the cell's centre \[m\].
+    pub cell_distance: f64,
+    /// Where the cell lies across the beam: from 0 at its right border to 1 at its left.
+    pub across: f64,
+}
+
+/// Where "passed" is less than this, nothing is said: a cell far away stays unknown, and is not
+/// called free for a millionth of its probability.
+const LEAST_PASSED: f64 = 1e-3;
+
+/// A cell with smaller shares than this is not touched.
+const LEAST_SHARES: f64 = 1e-6;
+
+/// Who caused a reading, by the map before the scan.
+///
+/// Eq. (9) treats every cell of a cone as if it were alone: one echo calls a whole arc half
+/// covered, though one surface caused it. The paper's first footnote says so. This update keeps
+/// the paper's form, a mixture of a Gaussian and a uniform distribution over coverages, and lets
+/// the map say how large the share of each is. A beam is divided into M bearings. With δ = d^l − z
+/// and E\[c\] the expected coverage of a cell before the scan, an echo from z has the causes
+///
+/// ```text
+/// o_i = max(0, 2·E[c_i] − 1)                                        how opaque a known cell is
+/// v_m = Π (1 − o_i)      over the known cells of bearing m, δ_i < −(r/2 + τ)     its clear view
+/// S   = (Σ_m v_m / M)^κ                     the nearest surface of the whole beam answers first
+/// a_m = S · v_m · (max_i w(δ_i)·E[c_i])^p   over the cells of bearing m, |δ_i| ≤ r/2 + τ
+/// w(δ) = 1 for |δ| ≤ r/2, else exp(−½ ((|δ| − r/2) / (τ/2))²)
+/// c_m = a_m / (Σ a + a_0)            L = Σ a / (Σ a + a_0)
+/// ```
+///
+/// c_m is the probability that the surface in bearing m answered, L that any surface of the map
+/// did; 1 − L is left to chance: a mirrored sound, another robot, what the map does not know. What
+/// the reading then says of one cell is [`Causes::evidence`].
+///
+/// An echo from beyond the usable range, and no echo, have no cause in the map: L = β·S and
+/// L = ν·S, with S over all the cells that they passed.
+///
+/// What of it is Bayes: given the cause, the mixture is the posterior of one cell, and the shares
+/// are the posterior probabilities of causes of which each is as likely as its surface is covered
+/// and in clear view, to the power p. What is approximation: causes are taken from the means of
+/// the cells and not jointly with them (one step of assumed-density filtering); the power p and
+/// the constant a_0, which are fitted; and S, which stands for the joint event that nothing
+/// nearer answered. A cell's own mean is a part of its bearing's a_m: leaving it out, so that
+/// only the other bearings and chance compete, explains whole explorations by .02 nats a cell
+/// worse, and would cost a cause for every cell.
+///
+/// Relatives: Thrun's forward models \[2001\]; Konolige's redundant and mirrored readings
+/// \[MURIEL, 1997\]; the sensor cause model of Agha-mohammadi et al. \[2019\], whose update is
+/// linear in the coverage.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Causes {
+    /// c_m.
+    pub ended: [f64; MOST_BEARINGS],
+    /// L.
+    pub any: f64,
+}
+
+/// What a reading says of one cell: shares, and where the coverage is if they are right.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shares {
+    /// The share of N(μ, σ).
+    pub(crate) ended: f64,
+    /// μ, σ
+    pub(crate) mu: f64,
+    pub(crate) sigma: f64,
+    /// The share of N(0, σ_free).
+    pub(crate) passed: f64,
+}
+
+/// How the cells that a beam meets bear on an echo.
+pub(crate) struct Clues<'a> {
+    parameters: &'a CauseParameters,
+    /// r/2 \[m\]
+    half: f64,
+    /// z, or up to where a beam without a cause passed \[m\].
+    end: f64,
+    /// v_m
+    clear: [f64; MOST_BEARINGS],
+    /// max w·E\[c\]
+    surface: [f64; MOST_BEARINGS],
+}
+
+impl Shares {
+    /// Whether the reading says nothing of the cell.
+    #[inline(always)]
+    pub(crate) fn are_nothing(&self) -> bool {
+        self.ended + self.passed < LEAST_SHARES
+    }
+}
+
+impl<'a> Clues<'a> {
+    /// No cell yet; `end` is z, or up to where the beam passed if nothing answered \[m\].
+    pub(crate) fn new(parameters: &'a CauseParameters, resolution: f64, end: f64) -> Self {
+        let (clear, surface) = ([1.0; MOST_BEARINGS], [0.0; MOST_BEARINGS]);
+        Self { parameters, half: 0.5 * resolution, end, clear, surface }
+    }
+
+    /// Adds a cell with its expected coverage before the scan, `None` if no reading touched it.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, met: Met, expected: Option<f64>) {
+        let p = self.parameters;
+        let delta = met.cell_distance - self.end;
+        let border = delta.abs() - self.half;
+        let bearing = p.bearing(met.across);
+        if border <= p.range_tolerance {
+            let z = border.max(0.0) / (0.5 * p.range_tolerance);
+            let near = if z > 0.0 { libm::exp(-0.5 * z * z) } else { 1.0 };
+            let surface = near * expected.unwrap_or(p.unknown_coverage);
+            self.surface[bearing] = self.surface[bearing].max(surface);
+        } else if let Some(expected) = expected.filter(|_| delta < 0.0) {
+            self.clear[bearing] *= 1.0 - opaque(expected);
+        }
+    }
+
+    /// S.
+    fn first(&self) -> f64 {
+        let clear = &self.clear[..self.parameters.bearings];
+        #[allow(clippy::cast_precision_loss, reason = "at most 16")]
+        let mean = clear.iter().sum::<f64>() / clear.len() as f64;
+        libm::pow(mean, self.parameters.first_echo)
+    }
+
+    /// The causes of an echo.
+    pub(crate) fn of_echo(&self) -> Causes {
+        let (p, first) = (self.parameters, self.first());
+        let mut ended = [0.0; MOST_BEARINGS];
+        let views = self.clear.iter().zip(&self.surface).take(p.bearings);
+        for (a, (clear, surface)) in ended.iter_mut().zip(views) {
+            // No cell in the bearing, or one that is surely free, answers nothing.
+            *a =
+                if *surface > 0.0 { first * clear * libm::pow(*surface, p.sharpness) } else { 0.0 };
+        }
+        let sum: f64 = ended.iter().sum();
+        ended.iter_mut().for_each(|a| *a /= sum + p.chance);
+        Causes { ended, any: sum / (sum + p.chance) }
+    }
+
+    /// What is known of a beam that no surface in range answered, with its own `share`.
+    pub(crate) fn of_passing(&self, share: f64) -> Causes {
+        Causes { ended: [0.0; MOST_BEARINGS], any: share * self.first() }
+    }
+}
+
+/// How opaque a cell is that is covered so much.
+#[inline(always)]
+pub fn opaque(expected: f64) -> f64 {
+    (2.0 * expected - 1.0).max(0.0)
+}
+
+impl CauseParameters {
+    /// The bearing of a cell.
+    #[inline(always)]
+    pub fn bearing(&self, across: f64) -> usize {
+        #[allow(
+            clippy::cast_precision_loss,
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "at most 16; saturates"
+        )]
+        let bearing = (across * self.bearings as f64) as usize;
+        bearing.min(self.bearings - 1)
+    }
+
+    /// β or ν: how surely a beam without a cause passed the cells before its end.
+    pub(crate) fn passing(&self, outcome: Outcome) -> f64 {
+        match outcome {
+            Outcome::Echo(_) => 0.0,
+            Outcome::Beyond(_) => self.beyond,
+            Outcome::NoEcho => self.no_echo.share,
+        }
+    }
+
+    /// f(d^l, θ), how much of "passed" is said of a cell:
+    ///
+    /// ```text
+    /// f = f_0 · exp(−(d^l/d_f)² − ½ ((2·across − 1)/width)²)      0 where that is below .001
+    /// ```
+    pub fn passed(&self, met: Met) -> f64 {
+        let along = met.cell_distance / self.free.range;
+        let across = (2.0 * met.across - 1.0) / self.free.width;
+        let f = self.free.share * libm::exp(-along * along - 0.5 * across * across);
+        if f < LEAST_PASSED { 0.0 } else { f }
+    }
+
+    /// What a reading with some causes says of a cell.
+    pub(crate) fn shares(
+        &self,
+        resolution: f64,
+        met: Met,
+        outcome: Outcome,
+        causes: &Causes,
+    ) -> Shares {
+        let (half, passed) = (0.5 * resolution, self.passed(met));
+        let Outcome::Echo(end) = outcome else {
+            return Shares { ended: 0.0, mu: 0.0, sigma: 1.0, passed: passed * causes.any };
+        };
+        let delta = met.cell_distance - end;
+        let ended = if delta.abs() - half <= self.range_tolerance || delta > half {
+            causes.ended[self.bearing(met.across)]
+        } else {
+            0.0
+        };
+        if delta > half {
+            let ended = self.behind_weight * ended;
+            return Shares { ended, mu: 1.0, sigma: self.sigma_behind, passed: 0.0 };
+        }
+        Shares {
+            ended,
+            mu: (0.5 + delta / (self.cell_depth * resolution)).clamp(0.0, 1.0),
+            sigma: self.sigma_in.at(met.cell_distance, end),
+            passed: if delta < 0.0 { passed * (causes.any - ended) } else { 0.0 },
+        }
+    }
+}
+
+impl Causes {
+    /// The causes where the map knows nothing yet: M bearings of unknown cells, all in clear view.
+    pub fn in_an_unknown_map(parameters: &CauseParameters) -> Self {
+        let mut clues = Clues::new(parameters, 1.0, 1.0);
+        clues.surface[..parameters.bearings].fill(parameters.unknown_coverage);
+        clues.of_echo()
+    }
+
+    /// Evaluates what an outcome with these causes says of the coverage x of a cell, at every bin:
+    ///
+    /// ```text
+    /// p(c_l = x | d) = (1 − s − g)·U + s·N(μ, σ, x) + g·N(0, σ_free, x)
+    ///
+    /// before the end, δ < −(r/2 + τ)   s = 0              g = f(d^l, θ)·L
+    /// at the end, |δ| ≤ r/2 or within  s = c_m            g = f(d^l, θ)·(L − c_m) if δ < 0
+    ///   τ of that                      μ = ½ + δ/ℓ        σ = σ_in
+    /// behind it, δ > r/2               s = b·c_m, μ = 1   σ = σ_behind
+    /// ```
+    ///
+    /// all three normalised over the bins, U uniform; μ is Eq. (10) with ℓ for the depth of the
+    /// cell, cut off at 0 and 1. It is a posterior of the cell under a uniform prior, as Eq. (9)
+    /// is, and never 0. Returns whether it says anything at all: shares that sum to less than
+    /// 1e-6 do not touch a cell.
+    pub fn evidence(
+        &self,
+        parameters: &CauseParameters,
+        resolution: f64,
+        met: Met,
+        outcome: Outcome,
+        out: &mut [f64],
+    ) -> bool {
+        let shares = parameters.shares(resolution, met, outcome, self);
+        let mut ended = vec![0.0; out.len()];
+        gaussian(shares.mu, shares.sigma, &mut ended);
+        gaussian(0.0, parameters.free.sigma, out);
+        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
+        let even = (1.0 - shares.ended - shares.passed) / out.len() as f64;
+        for (o, ended) in out.iter_mut().zip(&ended) {
+            *o = even + shares.ended * ended + shares.passed * *o;
+        }
+        !shares.are_nothing()
+    }
+}
+
+/// N(μ, σ, x) at the coverage x of every bin, normalised over the bins.
+pub(crate) fn gaussian(mu: f64, sigma: f64, out: &mut [f64]) {
+    let bins = out.len();
+    for (bin, o) in out.iter_mut().enumerate() {
+        let z = (bin_coverage(bin, bins) - mu) / sigma;
+        *o = libm::exp(-0.5 * z * z);
+    }
+    let sum: f64 = out.iter().sum();
+    out.iter_mut().for_each(|o| *o /= sum);
+}
