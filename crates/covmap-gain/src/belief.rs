@@ -1,49 +1,51 @@
-//! What the planner keeps of the map, laid out for the beams of many view-points.
+//! The copy of the map that sight and gains are computed from, laid out for the beams of many
+//! view-points. It knows nothing of how they are computed.
+//!
+//! What is read along beams lies in *bordered rasters*: rasters of the grid with a border as wide as
+//! a stencil, so that a stencil's cell is at a constant offset from every view-point, inside of the
+//! grid or not. What is read cell by cell lies in blocks of [`LANES`] neighbouring cells of a row:
+//! histograms bin by bin, so that a bin of all cells of a block is one vector.
 
 use crate::memory::Size;
-use crate::view_points::{groups, place};
+use crate::view_points::{group_and_lane, groups_per_row};
 use crate::{RangePrediction, Stencil};
 use covmap::lanes::{LANES, Lanes};
 use covmap::{Cell, CoverageMap, Grid, MAX_BINS, bin_coverage};
 
-/// The planner's copy of the map.
-///
-/// Codes, reflections and limits have a border as wide as the stencil, so that a stencil's cell
-/// is at a constant offset from every view-point, inside the grid or not. Histograms lie in
-/// blocks of [`LANES`] neighbouring cells of a row, bin by bin.
+/// The copy of the map, and which cells are reasons to measure.
 #[derive(Debug, Clone)]
-pub(crate) struct Cells {
+pub(crate) struct Belief {
     grid: Grid,
     bins: usize,
     border: usize,
-    /// Bordered: the bin of the mode, or one of the three codes past all bins.
-    codes: Vec<u8>,
-    /// Bordered: the distance up to which the cell is a reason to measure; 0 if it is none.
-    limits: Vec<f32>,
-    /// ρ by code.
+    /// How much a cell reflects, by its code.
     reflection_of: Vec<f64>,
-    /// Bordered: ρ.
+    /// Bordered: the bin of the cell's mode, or one of the three codes past all bins.
+    codes: Vec<u8>,
+    /// Bordered: ρ, how much the cell reflects.
     reflections: Vec<f64>,
     /// Bordered: how many of the [`LANES`] cells from here on reflect anything.
     reflecting: Vec<u8>,
-    /// In blocks of [`LANES`] neighbouring cells: entropies \[nats\], and 1 for a cell that a
-    /// measurement can change, else 0.
+    /// Bordered: the distance up to which the cell is a reason to measure \[m\]; 0 if it is none.
+    limits: Vec<f32>,
+    /// By block: entropies \[nats\].
     entropies: Vec<Lanes>,
+    /// By block: 1 for a cell that a measurement can change, else 0.
     changeable: Vec<Lanes>,
-    /// The blocks with changes since they were last asked for.
+    /// By block and bin: h and ĥ of [`BlockPrior`].
+    h: Vec<Lanes>,
+    h_hat: Vec<Lanes>,
+    /// The blocks with changes since they were last asked for, and which these are.
     changed: Vec<usize>,
     is_changed: Vec<bool>,
-    /// For every block h, and ĥ of [`Prior`], of every bin.
-    h: Vec<Lanes>,
-    tilt: Vec<Lanes>,
 }
 
-/// The histograms of a block of cells.
-pub(crate) struct Prior<'a> {
+/// The histograms of a block of cells, before a reading.
+pub(crate) struct BlockPrior<'a> {
     /// h of every bin.
     pub(crate) h: &'a [Lanes],
-    /// ĥ of every bin.
-    pub(crate) tilt: &'a [Lanes],
+    /// ĥ = h·(log h + H) of every bin, with the entropy H of h.
+    pub(crate) h_hat: &'a [Lanes],
     /// 1 for a cell that a measurement can change, else 0.
     pub(crate) changeable: &'a Lanes,
 }
@@ -53,7 +55,7 @@ const UNKNOWN: usize = 0;
 const PINNED: usize = 1;
 const OUTSIDE: usize = 2;
 
-impl Cells {
+impl Belief {
     pub(crate) fn new(
         grid: Grid,
         bins: usize,
@@ -68,9 +70,9 @@ impl Cells {
         let outside = (bins + OUTSIDE) as u8;
         // Lanes past the last cell of a row read on.
         let bordered = bordered + LANES;
-        let blocks = grid.height() * groups(&grid);
+        let blocks = grid.height() * groups_per_row(&grid);
         let none = [0.0; LANES];
-        let mut cells = Self {
+        let mut belief = Self {
             grid,
             bins,
             border,
@@ -81,18 +83,18 @@ impl Cells {
             reflecting: vec![0; bordered],
             entropies: vec![none; blocks],
             changeable: vec![none; blocks],
-            changed: Vec::new(),
-            is_changed: vec![false; blocks],
             // Past the last cell of a row any histogram will do, if its numbers are tame.
             h: vec![[1.0; LANES]; blocks * bins],
-            tilt: vec![none; blocks * bins],
+            h_hat: vec![none; blocks * bins],
+            changed: Vec::new(),
+            is_changed: vec![false; blocks],
         };
         if let Ok(unknown) = CoverageMap::new(grid, bins) {
             grid.cells().for_each(|cell| {
-                cells.update(&unknown, cell);
+                belief.update(&unknown, cell);
             });
         }
-        cells
+        belief
     }
 
     /// About how many bytes this takes.
@@ -104,11 +106,11 @@ impl Cells {
         BORDERED * size.bordered() + (lanes + 9.0) * size.blocks()
     }
 
-    /// The place of a cell in the bordered rasters, by its row-major index.
+    /// The index of a cell in the bordered rasters, by its row-major index.
     #[inline(always)]
     pub(crate) fn bordered(&self, index: usize) -> usize {
         let (x, y) = (index % self.grid.width(), index / self.grid.width());
-        (y + self.border) * self.bordered_width() + x + self.border
+        (y + self.border) * self.raster_width() + x + self.border
     }
 
     /// Takes over a cell's posterior. Returns whether what it reflects, or whether it can
@@ -122,12 +124,12 @@ impl Cells {
         if !std::mem::replace(&mut self.is_changed[block], true) {
             self.changed.push(block);
         }
-        let rows = block * self.bins..(block + 1) * self.bins;
+        let bins = block * self.bins..(block + 1) * self.bins;
         let entropy = -posterior.iter().map(|p| p * libm::log(*p)).sum::<f64>();
-        let (h, tilt) = (&mut self.h[rows.clone()], &mut self.tilt[rows]);
-        for ((h, tilt), p) in h.iter_mut().zip(tilt).zip(posterior.iter()) {
+        let (h, h_hat) = (&mut self.h[bins.clone()], &mut self.h_hat[bins]);
+        for ((h, h_hat), p) in h.iter_mut().zip(h_hat).zip(posterior.iter()) {
             #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-            ((h[lane], tilt[lane]) = (*p as f32, (p * (libm::log(*p) + entropy)) as f32));
+            ((h[lane], h_hat[lane]) = (*p as f32, (p * (libm::log(*p) + entropy)) as f32));
         }
         let code = if map.is_pinned(cell) {
             self.bins + PINNED
@@ -154,7 +156,7 @@ impl Cells {
         usize::from(old) != code
     }
 
-    /// The blocks with changes since this was last asked, in order.
+    /// The blocks with changes since this was last asked, in ascending order.
     pub(crate) fn take_changed(&mut self) -> Vec<usize> {
         let mut changed = std::mem::take(&mut self.changed);
         changed.iter().for_each(|block| self.is_changed[*block] = false);
@@ -162,27 +164,26 @@ impl Cells {
         changed
     }
 
-    /// ρ of all cells, bordered.
+    /// ρ of all cells, a bordered raster.
     pub(crate) fn reflections(&self) -> &[f64] {
         &self.reflections
     }
 
-    /// Whether any of the [`LANES`] cells from a place in the bordered rasters on reflects.
+    /// Whether any of the [`LANES`] cells from an index of the bordered rasters on reflects.
     #[inline(always)]
-    pub(crate) fn reflects(&self, bordered: usize) -> bool {
+    pub(crate) fn any_reflects(&self, bordered: usize) -> bool {
         self.reflecting[bordered] > 0
     }
 
-    /// Up to which distance each cell is a reason to measure, bordered \[m\].
+    /// Up to which distance each cell is a reason to measure \[m\], a bordered raster.
     pub(crate) fn limits(&self) -> &[f32] {
         &self.limits
     }
 
-    /// Whether the cell at a place in the bordered rasters is a reason to measure from so far
-    /// away \[m\].
+    /// Whether a cell is a reason to measure from so far away \[m\], by its row-major index.
     #[inline(always)]
-    pub(crate) fn is_reason(&self, bordered: usize, distance: f32) -> bool {
-        distance <= self.limits[bordered]
+    pub(crate) fn is_reason(&self, index: usize, distance: f32) -> bool {
+        distance <= self.limits[self.bordered(index)]
     }
 
     /// Sets a cell's limit; returns whether it is another one now.
@@ -198,21 +199,21 @@ impl Cells {
         self.entropies[block][lane]
     }
 
-    /// The block that holds a cell, and the cell's lane in it.
+    /// The block that holds a cell, and the cell's lane.
     fn block_of(&self, index: usize) -> (usize, usize) {
-        place(self.grid.width(), index)
+        group_and_lane(self.grid.width(), index)
     }
 
-    /// The histograms of a block, row by row of the grid.
+    /// The histograms of a block.
     #[inline(always)]
-    pub(crate) fn block(&self, block: usize) -> Prior<'_> {
-        let rows = block * self.bins..(block + 1) * self.bins;
-        let (h, tilt) = (&self.h[rows.clone()], &self.tilt[rows]);
-        Prior { h, tilt, changeable: &self.changeable[block] }
+    pub(crate) fn prior(&self, block: usize) -> BlockPrior<'_> {
+        let bins = block * self.bins..(block + 1) * self.bins;
+        let (h, h_hat) = (&self.h[bins.clone()], &self.h_hat[bins]);
+        BlockPrior { h, h_hat, changeable: &self.changeable[block] }
     }
 
     /// How far apart two rows lie in the bordered rasters.
-    pub(crate) fn bordered_width(&self) -> usize {
+    pub(crate) fn raster_width(&self) -> usize {
         self.grid.width() + 2 * self.border
     }
 }
@@ -232,7 +233,7 @@ mod tests {
         for unknown_reflection in [0.0, 0.3] {
             let prediction = RangePrediction { unknown_reflection, uniform_share: 0.0 };
             let mut map = CoverageMap::new(grid, 11).unwrap();
-            let mut cells = Cells::new(grid, 11, &stencil, prediction);
+            let mut belief = Belief::new(grid, 11, &stencil, prediction);
             for turn in 0..6u32 {
                 let at = Vector2::new(0.3 * f64::from(turn) - 1.0, 0.0);
                 let range = |i: u32| Range::Echo(0.4 + 0.05 * f64::from((i * 7 + turn) % 24));
@@ -241,12 +242,12 @@ mod tests {
                 let changes = integrate(&model, &mut map, &scan).into_iter();
                 let body = integrate_body(&mut map, at.into(), at.into(), 0.27);
                 for change in changes.chain(body) {
-                    cells.update(&map, change.cell);
+                    belief.update(&map, change.cell);
                 }
-                let windows = cells.reflections.windows(LANES).enumerate();
-                for (place, reflections) in windows {
+                let windows = belief.reflections.windows(LANES).enumerate();
+                for (bordered, reflections) in windows {
                     let any = reflections.iter().any(|rho| *rho > 0.0);
-                    assert_eq!(cells.reflects(place), any);
+                    assert_eq!(belief.any_reflects(bordered), any);
                 }
             }
         }

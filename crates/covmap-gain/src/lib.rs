@@ -26,15 +26,22 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-mod belief;
-mod cache;
 mod literal;
-mod memory;
-mod product;
 mod range_likelihood;
-mod sight;
 mod stencil;
+
+mod belief;
+mod numbers;
+mod sight;
 mod view_points;
+
+mod product;
+
+mod evaluator;
+mod outcomes;
+
+mod cache;
+mod memory;
 
 pub use cache::{GAIN_TOLERANCE, GainCache, Upkeep};
 pub use literal::expected_information_gain;

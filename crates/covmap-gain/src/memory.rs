@@ -1,7 +1,7 @@
 //! How much memory a cache will take, before it takes any.
 
 use crate::Upkeep;
-use crate::sight::as_f64;
+use crate::numbers::as_f64;
 use covmap::Grid;
 use covmap::lanes::LANES;
 use covmap_model::SensorModel;
@@ -20,8 +20,8 @@ pub(crate) struct Size {
     /// The cells of all beams of a stencil.
     pub(crate) stencil: f64,
     /// The cells of all beams at one distance: so many distances are told apart, but for the
-    /// symmetry of a ring that looks the same after a quarter turn.
-    pub(crate) ring: f64,
+    /// symmetry of a ring of sensors that looks the same after a quarter turn.
+    pub(crate) cells_per_ring: f64,
     /// How many ranges there are.
     pub(crate) ranges: f64,
     pub(crate) upkeep: Upkeep,
@@ -42,7 +42,7 @@ impl Size {
             border: footprint.farthest(reach) / r + 1.0,
             beams,
             stencil,
-            ring: stencil / ranges,
+            cells_per_ring: stencil / ranges,
             ranges,
             upkeep,
         }

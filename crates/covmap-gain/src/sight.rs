@@ -1,61 +1,63 @@
-//! Looking ahead along one beam from neighbouring view-points of a row, side by side.
+//! p(d | c) and V(l) of one beam from a group of view-points, side by side.
 //!
 //! The same as [`range_likelihood`](crate::range_likelihood()) and
-//! [`RangeLikelihood::cells_in_sight`](crate::RangeLikelihood::cells_in_sight), to the last bit.
+//! [`RangeLikelihood::cells_in_sight`](crate::RangeLikelihood::cells_in_sight), to the last bit;
+//! outcomes that are impossible from all view-points of the group are left out.
 
 use crate::BeamStencil;
-use crate::belief::Cells;
+use crate::belief::Belief;
+use crate::numbers::as_f64;
 use covmap::lanes::{LANES, Lanes};
 
-/// [`LANES`] probabilities.
-pub(crate) type Wide = [f64; LANES];
+/// [`LANES`] numbers in double precision.
+pub(crate) type Lanes64 = [f64; LANES];
 
 /// Outcomes less likely than this are left out of E\[I\]: of some hundred outcomes, all of them
 /// together are less than a hundredth of what a decision tolerates.
 const NEGLIGIBLE: f64 = 1e-9;
 
-/// A beam as all view-points see it.
+/// A beam over the bordered rasters of a [`Belief`]: the same from all view-points.
 #[derive(Debug, Clone)]
-pub(crate) struct Cone {
-    beam: BeamStencil,
-    /// Where its cells lie from a view-point in the bordered rasters.
+pub(crate) struct RasterBeam {
+    stencil: BeamStencil,
+    /// From a view-point to each of the cells in the bordered rasters.
     offsets: Vec<isize>,
     /// d^l \[m\].
     distances: Vec<f32>,
     uniform_share: f64,
 }
 
-/// p(d | c) from neighbouring view-points.
+/// p(d | c) of one beam from a group of view-points.
 #[derive(Debug, Clone)]
-pub(crate) struct Ahead {
-    /// k and P(k) of the echoes that are possible from one of them.
-    echoes: Vec<(usize, Wide)>,
+pub(crate) struct GroupLikelihood {
+    /// k and P(k) of the echoes that are possible from any of them.
+    echoes: Vec<(usize, Lanes64)>,
     /// The outcome past all echoes.
-    no_echo: (usize, Wide),
-    /// How many rings decide.
-    traced: Wide,
+    no_echo: (usize, Lanes64),
+    /// How many rings of the beam decide: see [`RangeLikelihood::traced`](crate::RangeLikelihood).
+    traced: Lanes64,
 }
 
-impl Ahead {
+impl GroupLikelihood {
     pub(crate) fn new() -> Self {
         Self { echoes: Vec::new(), no_echo: (0, [0.0; LANES]), traced: [0.0; LANES] }
     }
 
     /// k and P(k) of the possible echoes, in order.
-    pub(crate) fn echoes(&self) -> &[(usize, Wide)] {
+    pub(crate) fn echoes(&self) -> &[(usize, Lanes64)] {
         &self.echoes
     }
 
     /// The probability of no echo.
-    pub(crate) fn no_echo(&self) -> &Wide {
+    pub(crate) fn no_echo(&self) -> &Lanes64 {
         &self.no_echo.1
     }
 
-    /// The outcomes that matter to one of some view-points, with their probabilities: 0 for
-    /// the other view-points.
+    /// The outcomes that matter to any of some view-points, with their probabilities: 0 for the
+    /// other view-points, and where they do not matter.
     #[inline(always)]
-    pub(crate) fn likely(&self, view_points: u16, mut take: impl FnMut(usize, Lanes)) {
-        let least: Wide = std::array::from_fn(|lane| {
+    pub(crate) fn for_each_likely(&self, view_points: u16, mut take: impl FnMut(usize, Lanes)) {
+        let least: Lanes64 = std::array::from_fn(|lane| {
             if view_points >> lane & 1 == 1 { NEGLIGIBLE } else { f64::INFINITY }
         });
         for (k, p) in self.echoes.iter().chain([&self.no_echo]) {
@@ -72,14 +74,14 @@ impl Ahead {
     }
 }
 
-impl Cone {
-    pub(crate) fn new(beam: &BeamStencil, cells: &Cells, uniform_share: f64) -> Self {
-        let width = isize::try_from(cells.bordered_width()).unwrap_or(0);
+impl RasterBeam {
+    pub(crate) fn new(beam: &BeamStencil, belief: &Belief, uniform_share: f64) -> Self {
+        let width = isize::try_from(belief.raster_width()).unwrap_or(0);
         let offset = |c: &crate::StencilCell| c.dy as isize * width + c.dx as isize;
         #[allow(clippy::cast_possible_truncation, reason = "limits are f32")]
         let distances = beam.cells.iter().map(|c| c.cell_distance as f32).collect();
         Self {
-            beam: beam.clone(),
+            stencil: beam.clone(),
             offsets: beam.cells.iter().map(offset).collect(),
             distances,
             uniform_share,
@@ -88,36 +90,37 @@ impl Cone {
 
     /// How many outcomes there are.
     pub(crate) fn outcomes(&self) -> usize {
-        self.beam.rings.len() + 1
+        self.stencil.rings.len() + 1
     }
 
-    pub(crate) fn beam(&self) -> &BeamStencil {
-        &self.beam
+    /// Its cells from a view-point.
+    pub(crate) fn stencil(&self) -> &BeamStencil {
+        &self.stencil
     }
 
-    /// Where the beam's cells lie from a view-point in the bordered rasters.
+    /// From a view-point to each of the beam's cells in the bordered rasters.
     pub(crate) fn offsets(&self) -> &[isize] {
         &self.offsets
     }
 
-    /// The likelihood of every outcome. `here` is the first view-point's place in the bordered
-    /// rasters.
+    /// The likelihood of every outcome, written to `out`. `here` is the index of the group's first
+    /// view-point in the bordered rasters.
     #[inline(always)]
-    pub(crate) fn look(&self, cells: &Cells, here: usize, out: &mut Ahead) {
-        let rings = self.beam.rings.len();
+    pub(crate) fn predict(&self, belief: &Belief, here: usize, out: &mut GroupLikelihood) {
+        let rings = self.stencil.rings.len();
         let even = self.uniform_share / (as_f64(rings) + 1.0);
         let keep = 1.0 - self.uniform_share;
-        let Ahead { echoes, no_echo, traced } = out;
+        let GroupLikelihood { echoes, no_echo, traced } = out;
         echoes.clear();
         *traced = [as_f64(rings); LANES];
         let mut survival = [1.0; LANES];
-        for (k, ring) in self.beam.rings.iter().enumerate() {
+        for (k, ring) in self.stencil.rings.iter().enumerate() {
             let offsets = &self.offsets[ring.clone()];
-            let reflects = |offset: &isize| cells.reflects(here.wrapping_add_signed(*offset));
+            let reflects = |offset: &isize| belief.any_reflects(here.wrapping_add_signed(*offset));
             let mut q = [0.0; LANES];
             if offsets.iter().any(reflects) {
-                for (offset, weight) in offsets.iter().zip(&self.beam.weights[ring.clone()]) {
-                    let rho: &Wide = lanes(cells.reflections(), here, *offset);
+                for (offset, weight) in offsets.iter().zip(&self.stencil.weights[ring.clone()]) {
+                    let rho: &Lanes64 = at_offset(belief.reflections(), here, *offset);
                     for lane in 0..LANES {
                         q[lane] += weight * rho[lane];
                     }
@@ -148,14 +151,14 @@ impl Cone {
     /// V(l) of the beam: how many of its cells are in sight. An echo that is impossible changes no
     /// sum, and what it covers one from farther away covers, too.
     #[inline(always)]
-    pub(crate) fn in_sight(&self, ahead: &Ahead) -> [u16; LANES] {
+    pub(crate) fn in_sight(&self, likelihood: &GroupLikelihood) -> [u16; LANES] {
         const LIKELY: f64 = 0.5 - 1e-12;
         let (mut tail, mut seen) = ([0.0; LANES], [0.0; LANES]);
-        let (_, no_echo) = &ahead.no_echo;
+        let (_, no_echo) = &likelihood.no_echo;
         let mut with_no_echo = *no_echo;
-        let last = self.beam.no_echo_reach;
-        for (k, p) in ahead.echoes.iter().rev() {
-            let reach = self.beam.echo_reach[*k];
+        let last = self.stencil.no_echo_reach;
+        for (k, p) in likelihood.echoes.iter().rev() {
+            let reach = self.stencil.echo_reach[*k];
             let cells = as_f64(reach);
             for lane in 0..LANES {
                 tail[lane] += p[lane];
@@ -179,13 +182,13 @@ impl Cone {
         out
     }
 
-    /// How many of the beam's cells decide what these view-points see and gain: those that may
+    /// How many of the beam's cells decide what some view-points see and gain: those that may
     /// reflect, and those that a possible outcome covers.
     #[inline(always)]
-    pub(crate) fn dependency(&self, ahead: &Ahead, view_points: u16) -> u16 {
+    pub(crate) fn horizon(&self, likelihood: &GroupLikelihood, view_points: u16) -> u16 {
         let mut farthest = [0.0; LANES];
-        for (k, p) in ahead.echoes.iter().chain([&ahead.no_echo]) {
-            let reach = as_f64(self.beam.reach(*k));
+        for (k, p) in likelihood.echoes.iter().chain([&likelihood.no_echo]) {
+            let reach = as_f64(self.stencil.reach(*k));
             for lane in 0..LANES {
                 let covered = if p[lane] > 0.0 { reach } else { 0.0 };
                 farthest[lane] = if covered > farthest[lane] { covered } else { farthest[lane] };
@@ -194,8 +197,8 @@ impl Cone {
         let mut cells = 0;
         for lane in (0..LANES).filter(|lane| view_points >> lane & 1 == 1) {
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
-            let (covered, traced) = (farthest[lane] as usize, ahead.traced[lane] as usize);
-            let traced = self.beam.rings[..traced].last().map_or(0, |ring| ring.end);
+            let (covered, traced) = (farthest[lane] as usize, likelihood.traced[lane] as usize);
+            let traced = self.stencil.rings[..traced].last().map_or(0, |ring| ring.end);
             cells = cells.max(covered).max(traced);
         }
         #[allow(clippy::cast_possible_truncation, reason = "a planner refuses beams of more cells")]
@@ -203,21 +206,22 @@ impl Cone {
         cells
     }
 
-    /// Which of some view-points have a reason to measure in sight.
+    /// Which of some view-points have a reason to measure in sight, as far as the beam sees from
+    /// each of them.
     #[inline(always)]
     pub(crate) fn reasons(
         &self,
-        cells: &Cells,
+        belief: &Belief,
         here: usize,
         in_sight: &[u16; LANES],
         view_points: u16,
     ) -> u16 {
-        let limits = cells.limits();
+        let limits = belief.limits();
         let farthest = in_sight.iter().copied().max().unwrap_or(0);
         let mut found = [0u16; LANES];
         let all = self.offsets.iter().zip(&self.distances).zip(0..farthest);
         for ((offset, distance), i) in all {
-            let limit: &Lanes = lanes(limits, here, *offset);
+            let limit: &Lanes = at_offset(limits, here, *offset);
             for lane in 0..LANES {
                 found[lane] |= u16::from(*distance <= limit[lane]) & u16::from(i < in_sight[lane]);
             }
@@ -229,14 +233,17 @@ impl Cone {
     }
 
     /// The cells of the beam that are in sight, with their distances.
-    pub(crate) fn cells(&self, in_sight: u16) -> impl Iterator<Item = (&crate::StencilCell, f32)> {
-        self.beam.cells[..usize::from(in_sight)].iter().zip(self.distances.iter().copied())
+    pub(crate) fn cells_in_sight(
+        &self,
+        in_sight: u16,
+    ) -> impl Iterator<Item = (&crate::StencilCell, f32)> {
+        self.stencil.cells[..usize::from(in_sight)].iter().zip(self.distances.iter().copied())
     }
 }
 
 /// Whether no lane is above 0, where none is below. Compared as bits, side by side.
 #[inline(always)]
-fn all_zero(lanes: &Wide) -> bool {
+fn all_zero(lanes: &Lanes64) -> bool {
     let mut bits = 0;
     for lane in lanes {
         bits |= lane.to_bits();
@@ -248,15 +255,9 @@ fn bits(lanes: &[u16; LANES]) -> u16 {
     lanes.iter().enumerate().fold(0, |bits, (lane, set)| bits | (set << lane))
 }
 
-pub(crate) fn as_f64(count: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "some thousand cells")]
-    let count = count as f64;
-    count
-}
-
-/// The values of a bordered raster at an offset from neighbouring view-points.
+/// The values of a bordered raster at an offset from a group of view-points.
 #[inline(always)]
-pub(crate) fn lanes<T>(raster: &[T], here: usize, offset: isize) -> &[T; LANES] {
+pub(crate) fn at_offset<T>(raster: &[T], here: usize, offset: isize) -> &[T; LANES] {
     let at = here.wrapping_add_signed(offset);
     let Some(lanes) = raster[at..].first_chunk() else { panic!("rasters have a border") };
     lanes

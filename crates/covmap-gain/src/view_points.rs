@@ -1,20 +1,25 @@
 //! Sets of view-points, in groups of neighbours.
+//!
+//! Each row of the grid is cut into pieces of [`LANES`] neighbours. A piece is called a *group* where
+//! its members are view-points, and a *block* where they are cells that are looked at; groups and
+//! blocks are numbered alike, row by row. The *lane* of a member is its place in the piece. The last
+//! piece of a row may have fewer members.
 
 use covmap::Grid;
 use covmap::lanes::LANES;
 
-/// A set of view-points. Each row of the grid is cut into groups of [`LANES`] neighbours; a bit
-/// for each.
+/// A set of view-points.
 #[derive(Debug, Clone)]
 pub struct ViewPoints {
     width: usize,
+    /// For each group a bit for each lane.
     bits: Vec<u16>,
 }
 
 impl ViewPoints {
     /// The empty set.
     pub fn new(grid: &Grid) -> Self {
-        Self { width: grid.width(), bits: vec![0; grid.height() * groups(grid)] }
+        Self { width: grid.width(), bits: vec![0; grid.height() * groups_per_row(grid)] }
     }
 
     /// One view-point, by its row-major index.
@@ -26,17 +31,18 @@ impl ViewPoints {
 
     /// Adds a view-point by its row-major index.
     pub fn insert(&mut self, index: usize) {
-        let (group, lane) = place(self.width, index);
+        let (group, lane) = group_and_lane(self.width, index);
         self.bits[group] |= 1 << lane;
     }
 
-    /// Adds all view-points of another set that are in the same group as one of them.
-    pub fn insert_group(&mut self, of: &Self, index: usize) {
-        let (group, _) = place(self.width, index);
+    /// Adds all view-points of another set that are in the same group as one of them: computed side
+    /// by side, neighbours cost nothing.
+    pub fn insert_neighbours(&mut self, of: &Self, index: usize) {
+        let (group, _) = group_and_lane(self.width, index);
         self.bits[group] |= of.bits[group];
     }
 
-    /// The members of each group, row by row.
+    /// The members of each group, bit by bit, row by row.
     pub(crate) fn groups(&self) -> &[u16] {
         &self.bits
     }
@@ -55,13 +61,14 @@ impl ViewPoints {
     }
 }
 
-/// How many groups a row has.
-pub(crate) fn groups(grid: &Grid) -> usize {
+/// How many groups, or blocks, a row has.
+pub(crate) fn groups_per_row(grid: &Grid) -> usize {
     grid.width().div_ceil(LANES)
 }
 
-/// The group of a view-point and its lane there, by its row-major index and the grid's width.
-pub(crate) fn place(width: usize, index: usize) -> (usize, usize) {
+/// The group of a view-point and its lane, by its row-major index and the grid's width; of a cell
+/// its block and its lane.
+pub(crate) fn group_and_lane(width: usize, index: usize) -> (usize, usize) {
     let (x, y) = (index % width, index / width);
     (y * width.div_ceil(LANES) + x / LANES, x % LANES)
 }

@@ -65,7 +65,7 @@ impl Planner {
     fn evaluate(&mut self, records: &[CandidateRecord], places: &[usize], all: &ViewPoints) {
         let mut wanted = ViewPoints::new(&self.grid);
         let indices = places.iter().filter_map(|i| self.grid.index(records[*i].cell));
-        indices.for_each(|index| wanted.insert_group(all, index));
+        indices.for_each(|index| wanted.insert_neighbours(all, index));
         self.gains.refresh_gains(&wanted);
     }
 

@@ -1,131 +1,137 @@
-//! What is done for one row of groups of view-points, for each kind of vector registers.
+//! What is done for one row of groups of view-points, compiled for each kind of vector registers.
+//!
+//! `here` is always the index of the row's first view-point in the bordered rasters, and `wanted` has
+//! a bit for each view-point of each group.
 
-use super::{Group, State};
-use crate::belief::Cells;
-use crate::product::bound::Potentials;
-use crate::product::sweep::{Row, Unit};
-use crate::sight::{Ahead, Cone, as_f64};
+use super::staleness::{BeamState, GroupState};
+use crate::belief::Belief;
+use crate::evaluator::Evaluator;
+use crate::numbers::as_f64;
+use crate::outcomes::{AskedRow, GroupBeam};
+use crate::sight::{GroupLikelihood, RasterBeam};
 use covmap::lanes::{LANES, Lanes};
 use pulp::{Simd, WithSimd};
 
-/// Looks ahead from the groups of a row whose sight or reasons are stale.
-pub(super) struct Sight<'a> {
-    pub(super) cones: &'a [Cone],
-    pub(super) cells: &'a Cells,
+/// Brings sight and reasons of a row's groups up to date.
+pub(super) struct RefreshSight<'a> {
+    pub(super) beams: &'a [RasterBeam],
+    pub(super) belief: &'a Belief,
     pub(super) here: usize,
     pub(super) wanted: &'a [u16],
-    pub(super) groups: &'a mut [Group],
-    pub(super) states: &'a mut [State],
+    pub(super) groups: &'a mut [GroupState],
+    pub(super) states: &'a mut [BeamState],
     pub(super) in_sight: &'a mut [[u16; LANES]],
-    pub(super) ahead: &'a mut Ahead,
+    pub(super) likelihood: &'a mut GroupLikelihood,
 }
 
-impl WithSimd for Sight<'_> {
+impl WithSimd for RefreshSight<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { cones, cells, here, wanted, groups, states, in_sight, ahead } = self;
-        let beams = cones.len();
+        let Self { beams, belief, here, wanted, groups, states, in_sight, likelihood } = self;
+        let count = beams.len();
         let stale = |i: &usize| wanted[*i] & !groups[*i].sight != 0;
         let all: Vec<usize> = (0..wanted.len()).filter(stale).collect();
-        for (beam, cone) in cones.iter().enumerate() {
+        for (number, beam) in beams.iter().enumerate() {
             for &i in &all {
                 let (here, wanted) = (here + i * LANES, wanted[i]);
                 let (state, in_sight) =
-                    (&mut states[i * beams + beam], &mut in_sight[i * beams + beam]);
+                    (&mut states[i * count + number], &mut in_sight[i * count + number]);
                 if wanted & !state.sight != 0 {
-                    cone.look(cells, here, ahead);
-                    *in_sight = cone.in_sight(ahead);
+                    beam.predict(belief, here, likelihood);
+                    *in_sight = beam.in_sight(likelihood);
                     let before = if state.sight == 0 { 0 } else { state.horizon };
-                    state.horizon = before.max(cone.dependency(ahead, wanted));
+                    state.horizon = before.max(beam.horizon(likelihood, wanted));
                     state.sight |= wanted;
                     state.reason = 0;
                 }
                 if wanted & !state.reason != 0 {
-                    state.has_reason = cone.reasons(cells, here, in_sight, state.sight);
+                    state.has_reason = beam.reasons(belief, here, in_sight, state.sight);
                     state.reason = state.sight;
                 }
             }
         }
         for i in all {
-            let states = &states[i * beams..(i + 1) * beams];
+            let states = &states[i * count..(i + 1) * count];
             groups[i].sight = states.iter().fold(u16::MAX, |all, s| all & s.sight & s.reason);
             groups[i].has_reason = states.iter().fold(0, |any, s| any | s.has_reason);
         }
     }
 }
 
-/// Looks ahead along the beams of a row whose gains are stale.
-pub(super) struct Likely<'a> {
-    pub(super) cones: &'a [Cone],
-    pub(super) cells: &'a Cells,
+/// Asks for the gains of a row's beams that are stale, with their likely outcomes.
+pub(super) struct AskOutcomes<'a> {
+    pub(super) beams: &'a [RasterBeam],
+    pub(super) belief: &'a Belief,
     pub(super) here: usize,
     pub(super) wanted: &'a [u16],
-    pub(super) states: &'a [State],
+    pub(super) states: &'a [BeamState],
     pub(super) y: usize,
-    pub(super) ahead: &'a mut Ahead,
+    pub(super) likelihood: &'a mut GroupLikelihood,
 }
 
-impl WithSimd for Likely<'_> {
-    type Output = Row;
+impl WithSimd for AskOutcomes<'_> {
+    type Output = AskedRow;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Row {
-        let Self { cones, cells, here, wanted, states, y, ahead } = self;
-        let mut row = Row { y, ..Row::default() };
-        for (beam, cone) in cones.iter().enumerate() {
+    fn with_simd<S: Simd>(self, _: S) -> AskedRow {
+        let Self { beams, belief, here, wanted, states, y, likelihood } = self;
+        let mut row = AskedRow { y, ..AskedRow::default() };
+        for (number, beam) in beams.iter().enumerate() {
             for (group, wanted) in wanted.iter().enumerate() {
-                let known = states[group * cones.len() + beam].gain;
+                let known = states[group * beams.len() + number].gain;
                 if wanted & !known == 0 {
                     continue;
                 }
-                cone.look(cells, here + group * LANES, ahead);
+                beam.predict(belief, here + group * LANES, likelihood);
                 let first = row.outcomes.len();
-                ahead.likely(*wanted, |k, p| {
+                likelihood.for_each_likely(*wanted, |k, p| {
                     row.outcomes.push(k);
                     row.probabilities.push(p);
                 });
-                row.units.push(Unit { group, beam, likely: first..row.outcomes.len() });
+                let outcomes = first..row.outcomes.len();
+                row.beams.push(GroupBeam { group, beam: number, outcomes });
             }
         }
         row
     }
 }
 
-/// Bounds the gains of the beams of a row that are stale.
-pub(super) struct Bounds<'a> {
-    pub(super) cones: &'a [Cone],
-    pub(super) cells: &'a Cells,
-    pub(super) potentials: &'a Potentials,
+/// Brings the bounds of a row's groups up to date where the gains are not.
+pub(super) struct RefreshBounds<'a> {
+    pub(super) beams: &'a [RasterBeam],
+    pub(super) belief: &'a Belief,
+    pub(super) evaluator: &'a Evaluator,
     pub(super) here: usize,
     pub(super) wanted: &'a [u16],
-    pub(super) groups: &'a mut [Group],
-    pub(super) states: &'a mut [State],
+    pub(super) groups: &'a mut [GroupState],
+    pub(super) states: &'a mut [BeamState],
     pub(super) gain: &'a mut [Lanes],
     pub(super) mean: &'a mut [[f64; LANES]],
-    pub(super) ahead: &'a mut Ahead,
+    pub(super) likelihood: &'a mut GroupLikelihood,
 }
 
-impl WithSimd for Bounds<'_> {
+impl WithSimd for RefreshBounds<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { cones, cells, potentials, here, wanted, groups, states, gain, mean, ahead } =
+        let Self { beams, belief, evaluator, here, wanted, groups, states, gain, mean, likelihood } =
             self;
-        let beams = cones.len();
+        let count = beams.len();
         let stale = |i: &usize| wanted[*i] & !groups[*i].bound != 0;
         let all: Vec<usize> = (0..wanted.len()).filter(stale).collect();
-        for (beam, cone) in cones.iter().enumerate() {
+        for (number, beam) in beams.iter().enumerate() {
             for &i in &all {
-                let (state, gain) = (&mut states[i * beams + beam], &mut gain[i * beams + beam]);
+                let (state, gain) =
+                    (&mut states[i * count + number], &mut gain[i * count + number]);
                 if wanted[i] & !state.bound == 0 {
                     continue;
                 }
                 let here = here + i * LANES;
-                cone.look(cells, here, ahead);
-                let bound = potentials.bound(cone, here, ahead);
+                beam.predict(belief, here, likelihood);
+                let bound = evaluator.bound(beam, here, likelihood);
                 for lane in 0..LANES {
                     let exact = state.gain >> lane & 1 == 1;
                     gain[lane] = if exact { gain[lane] } else { bound[lane] };
@@ -134,19 +140,19 @@ impl WithSimd for Bounds<'_> {
             }
         }
         for i in all {
-            mean[i] = average(&gain[i * beams..(i + 1) * beams]);
-            (groups[i].gain, groups[i].bound) = up_to_date(&states[i * beams..(i + 1) * beams]);
+            mean[i] = average(&gain[i * count..(i + 1) * count]);
+            (groups[i].gain, groups[i].bound) = up_to_date(&states[i * count..(i + 1) * count]);
         }
     }
 }
 
-/// For which view-points the gains of all beams are up to date, and the bounds.
-pub(super) fn up_to_date(states: &[State]) -> (u16, u16) {
-    let both = |(gain, bound), state: &State| (gain & state.gain, bound & state.bound);
+/// For which view-points of a group the gains of all beams are up to date, and the bounds.
+pub(super) fn up_to_date(states: &[BeamState]) -> (u16, u16) {
+    let both = |(gain, bound), state: &BeamState| (gain & state.gain, bound & state.bound);
     states.iter().fold((u16::MAX, u16::MAX), both)
 }
 
-/// The average over the beams.
+/// The average over the beams, of each view-point of a group.
 pub(super) fn average(gains: &[Lanes]) -> [f64; LANES] {
     let mut sum = [0.0; LANES];
     for gains in gains {

@@ -28,7 +28,7 @@ fn kept(model: &SensorModel, grid: Grid) -> GainCache {
 /// Takes over a cell, and forgets all that may depend on it.
 fn see(cache: &mut GainCache, map: &CoverageMap, cell: Cell) {
     cache.update(map, cell);
-    cache.onlookers.mark(cache.grid.index(cell).unwrap(), Mark::Sight);
+    cache.onlookers.mark(cache.grid.index(cell).unwrap(), CellChange::Reflection);
 }
 
 /// All that is kept after some scans, with one kind of registers.

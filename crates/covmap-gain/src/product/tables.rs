@@ -1,10 +1,30 @@
 //! What is found once for a model and a ring of sensors: which imagined readings are evaluated, and
-//! what each weighs in all others.
+//! what each counts in all others.
+//!
+//! The tables are made from the bottom up, as the modules are listed. A *distance ring* is what all
+//! beams see at about one distance from a view-point ([`rings`]). An outcome is *near* a ring if it
+//! ends in it or before it, and *beyond* it if it ends farther away than all its cells. A cell lies
+//! *in front* of an end, *at* it or *behind* it; without an echo there is no end.
+//!
+//! | outcome | cells | the gain of a cell is |
+//! |---|---|---|
+//! | beyond the ring | all are in front | interpolated over range and distance ([`beyond`]) |
+//! | near, ends before the ring | all are behind | interpolated over the distance |
+//! | near, ends in the ring | in front, at the end and behind | that of its own distance |
+//! | no echo | all are free | interpolated over the distance |
+//!
+//! What is interpolated needs some readings at nodes; the readings at the nodes of all rings are
+//! mixtures of a few that are kept for every cell ([`basis`]).
 
-pub(crate) mod asks;
-pub(crate) mod basis;
-pub(crate) mod evidence;
-pub(crate) mod front;
-pub(crate) mod interpolation;
-pub(crate) mod rings;
-pub(crate) mod span;
+pub(super) mod evidence;
+pub(super) mod probes;
+
+pub(super) mod interpolation;
+pub(super) mod spanning;
+
+pub(super) mod basis;
+
+pub(super) mod beyond;
+pub(super) mod rings;
+
+pub(super) mod needs;

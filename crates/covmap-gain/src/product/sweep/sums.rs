@@ -1,19 +1,23 @@
-//! Sums of gains over the cells of a beam, [`LANES`] view-points side by side.
+//! Sums of gains over the cells of a beam in a ring, from all view-points of a group side by side.
+//!
+//! `cells` are the offsets of the cells from a view-point in the planes of gains, `here` is the
+//! group's first view-point there, and `stride` leads from one reading's plane to the next one's.
 
-use crate::product::tables::front::Front;
-use crate::product::tables::rings::{Shares, Source};
+use crate::product::tables::beyond::BeyondOutcomes;
+use crate::product::tables::rings::{CellReadings, OutcomeReadings, OwnReading};
 use covmap::lanes::{LANES, Lanes, TOGETHER};
 
-/// How much each of some readings weighs in all of a unit's outcomes from the `first` on together.
+/// How much each of some readings weighs in all of a beam's outcomes beyond a ring together:
+/// Σ_d p(d | c) · weight(d). The `nearest` outcome has the first weights.
 #[inline(always)]
 pub(crate) fn mix_outcomes<'a>(
     likely: impl Iterator<Item = (&'a usize, &'a Lanes)>,
-    first: usize,
+    nearest: usize,
     weights: &[[f32; TOGETHER]],
 ) -> [Lanes; TOGETHER] {
     let [mut a, mut b, mut c, mut d] = [[0.0; LANES]; TOGETHER];
     for (k, p) in likely {
-        let weights = &weights[k - first];
+        let weights = &weights[k - nearest];
         add(&mut a, p, weights[0]);
         add(&mut b, p, weights[1]);
         add(&mut c, p, weights[2]);
@@ -22,28 +26,30 @@ pub(crate) fn mix_outcomes<'a>(
     [a, b, c, d]
 }
 
-impl Front {
-    /// Adds the gains of a beam's cells, given the shares of the readings.
+impl BeyondOutcomes {
+    /// Adds the gains of a beam's cells by all outcomes together, given what each reading weighs in
+    /// them.
     #[inline(always)]
     pub(crate) fn add(
         &self,
         gain: &mut Lanes,
-        shares: &[[Lanes; TOGETHER]],
+        reading_weights: &[[Lanes; TOGETHER]],
         beam: usize,
         cells: &[isize],
         planes: &[f32],
         (here, stride): (usize, usize),
     ) {
-        for (some, (factors, shares)) in self.factors[beam].iter().zip(shares).enumerate() {
-            let first = here + (self.base + some * TOGETHER) * stride;
+        for (some, (factors, weights)) in self.factors[beam].iter().zip(reading_weights).enumerate()
+        {
+            let first = here + (self.first + some * TOGETHER) * stride;
             let sums = match self.count - some * TOGETHER {
                 1 => sum_some::<1>(factors, cells, planes, first, stride),
                 2 => sum_some::<2>(factors, cells, planes, first, stride),
                 3 => sum_some::<3>(factors, cells, planes, first, stride),
                 _ => sum_some::<TOGETHER>(factors, cells, planes, first, stride),
             };
-            for (share, sum) in shares.iter().zip(&sums) {
-                add_product(gain, share, sum);
+            for (weights, sum) in weights.iter().zip(&sums) {
+                add_product(gain, weights, sum);
             }
         }
     }
@@ -63,14 +69,14 @@ fn sum_some<const R: usize>(
     for (offset, factors) in cells.iter().zip(factors) {
         let at = first.wrapping_add_signed(*offset);
         for (reading, sum) in sums.iter_mut().enumerate() {
-            add(sum, lanes(planes, at + reading * stride), factors[reading]);
+            add(sum, gains_at(planes, at + reading * stride), factors[reading]);
         }
     }
     std::array::from_fn(|reading| if reading < R { sums[reading] } else { [0.0; LANES] })
 }
 
-impl Source {
-    /// The gains of a beam's cells, summed.
+impl OutcomeReadings {
+    /// Σ of the gains of a beam's cells by the outcome.
     #[inline(always)]
     pub(crate) fn sum(
         &self,
@@ -80,8 +86,8 @@ impl Source {
         (here, stride): (usize, usize),
     ) -> Lanes {
         let first = here + self.first * stride;
-        match &self.shares {
-            Shares::Weights(weights) => {
+        match &self.cells {
+            CellReadings::Weighted(weights) => {
                 let weights = &weights[beam];
                 match self.count {
                     1 => mix::<1>(weights, cells, planes, first, stride),
@@ -93,7 +99,7 @@ impl Source {
                         for (offset, weights) in cells.iter().zip(weights.chunks_exact(count)) {
                             let mut at = first.wrapping_add_signed(*offset);
                             for weight in weights {
-                                add(&mut sum, lanes(planes, at), *weight);
+                                add(&mut sum, gains_at(planes, at), *weight);
                                 at += stride;
                             }
                         }
@@ -101,11 +107,11 @@ impl Source {
                     }
                 }
             }
-            Shares::Own(own) => {
+            CellReadings::Own(own) => {
                 let mut sum = [0.0; LANES];
-                for (cell, reading) in &own[beam] {
+                for OwnReading { cell, reading } in &own[beam] {
                     let at = first.wrapping_add_signed(cells[*cell]) + reading * stride;
-                    add(&mut sum, lanes(planes, at), 1.0);
+                    add(&mut sum, gains_at(planes, at), 1.0);
                 }
                 sum
             }
@@ -126,14 +132,14 @@ fn mix<const M: usize>(
     for (offset, weights) in cells.iter().zip(weights.as_chunks::<M>().0) {
         let at = first.wrapping_add_signed(*offset);
         for (i, weight) in weights.iter().enumerate() {
-            add(&mut sum, lanes(planes, at + i * stride), *weight);
+            add(&mut sum, gains_at(planes, at + i * stride), *weight);
         }
     }
     sum
 }
 
 #[inline(always)]
-fn lanes(plane: &[f32], at: usize) -> &Lanes {
+fn gains_at(plane: &[f32], at: usize) -> &Lanes {
     plane[at..].first_chunk().unwrap_or(&[0.0; LANES])
 }
 

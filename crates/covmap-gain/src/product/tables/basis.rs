@@ -1,4 +1,4 @@
-//! The few readings that others are mixtures of.
+//! The few readings that others are mixtures of, and their gains, which are kept for every cell.
 //!
 //! What a reading tells of a cell in front of its end depends on σ_out and γ only, whatever the
 //! ring; so does what it tells of one behind, and what no echo tells. Its gain is nearly a mixture of
@@ -6,10 +6,11 @@
 //! in front, 9 behind, and one. These are evaluated when a cell changes, and kept; a mixture of them
 //! takes a fifth of the time that an evaluation does.
 
-use super::evidence::{Evidence, Reading, to_f32};
-use super::interpolation::Probes;
-use super::span::Span;
-use crate::belief::{Cells, Prior};
+use super::evidence::{Evidence, ExcessEvidence};
+use super::probes::ProbeHistograms;
+use super::spanning::SpanningSet;
+use crate::belief::{Belief, BlockPrior};
+use crate::numbers::to_f32;
 use covmap::lanes::{LANES, Lanes};
 use pulp::Arch;
 use rayon::prelude::*;
@@ -17,59 +18,65 @@ use std::ops::Range;
 
 /// The gain of a mixture may be off by so much of what an interpolated one may, where the readings
 /// are those that tell most.
-const SHARE: f64 = 0.5;
+const MIXTURE_TOLERANCE: f64 = 0.5;
 /// So many readings tell how large a basis must be, about.
 const SAMPLE: usize = 512;
 /// So many blocks of cells are looked through by one thread.
 const BLOCKS: usize = 64;
 
-/// An imagined reading: how its gain is found.
+/// How the gain of an imagined reading is found.
 #[derive(Debug, Clone)]
-pub(crate) enum Imagined {
+pub(crate) enum ReadingGain {
     /// By evaluating it.
-    Evaluated(Reading),
-    /// As a mixture of the basis from its `first` reading on.
+    Evaluated(ExcessEvidence),
+    /// As a mixture of the basis, from its `first` reading on.
     Mixed { first: usize, weights: Vec<f32> },
 }
 
-/// Many readings as mixtures of a part of the basis, to be taken one after the other.
-pub(crate) struct Mixtures {
+/// Many readings as mixtures of a part of the basis. They are taken from the front, one after the
+/// other.
+pub(crate) struct MixtureQueue {
     first: usize,
     /// For each reading the weight of every member.
     weights: Vec<Vec<f64>>,
     /// For each reading the gains of all probes, in units of what they may be off.
     gains: Vec<Vec<f64>>,
+    /// How many were taken.
     taken: usize,
 }
 
 /// The readings that others are mixtures of, and their gains.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Basis {
-    readings: Vec<Reading>,
-    /// For every block of cells the gains of all readings.
+    readings: Vec<ExcessEvidence>,
+    /// For every block of cells the gains of all readings, from one reading to the next.
     gains: Vec<Lanes>,
 }
 
 impl Basis {
     /// Takes some of these readings into the basis, as many as all of them need.
-    pub(crate) fn extend(&mut self, readings: &[&Evidence], probes: &Probes) -> Mixtures {
+    pub(crate) fn extend(
+        &mut self,
+        readings: &[&Evidence],
+        probes: &ProbeHistograms,
+    ) -> MixtureQueue {
         let gains = probes.in_tolerances(readings);
-        let Span { members, weights } = Span::of(&gains, SHARE);
+        let SpanningSet { members, weights } = SpanningSet::of(&gains, MIXTURE_TOLERANCE);
         let first = self.readings.len();
-        self.readings.extend(members.iter().map(|member| readings[*member].reading()));
-        Mixtures { first, weights, gains, taken: 0 }
+        self.readings.extend(members.iter().map(|member| readings[*member].excess()));
+        MixtureQueue { first, weights, gains, taken: 0 }
     }
 
     /// The same, unless it takes more than `most`. Some of the readings tell.
     pub(crate) fn extend_by_few(
         &mut self,
         readings: &[&Evidence],
-        probes: &Probes,
+        probes: &ProbeHistograms,
         most: usize,
-    ) -> Option<Mixtures> {
+    ) -> Option<MixtureQueue> {
         let some: Vec<&Evidence> =
             readings.iter().step_by(readings.len() / SAMPLE + 1).copied().collect();
-        let needed = Span::of(&probes.in_tolerances(&some), SHARE).members.len();
+        let needed = SpanningSet::of(&probes.in_tolerances(&some), MIXTURE_TOLERANCE).members.len();
         (needed <= most).then(|| self.extend(readings, probes))
     }
 
@@ -78,8 +85,8 @@ impl Basis {
         self.gains = vec![[0.0; LANES]; blocks * self.readings.len()];
     }
 
-    /// Evaluates the basis in blocks of cells that changed, given in order.
-    pub(crate) fn update(&mut self, arch: Arch, cells: &Cells, changed: &[usize]) {
+    /// Evaluates the basis in blocks of cells that changed, given in ascending order.
+    pub(crate) fn update(&mut self, arch: Arch, belief: &Belief, changed: &[usize]) {
         let Self { readings, gains } = self;
         let portions = gains.par_chunks_mut((readings.len() * BLOCKS).max(1)).enumerate();
         portions.for_each(|(portion, gains)| {
@@ -90,7 +97,7 @@ impl Basis {
                 arch.dispatch(
                     #[inline(always)]
                     || {
-                        let prior = cells.block(*block);
+                        let prior = belief.prior(*block);
                         let all = gains.iter_mut().zip(readings.iter());
                         all.for_each(|(gain, reading)| *gain = reading.gain(&prior));
                     },
@@ -101,10 +108,15 @@ impl Basis {
 
     /// The gain of a reading in every cell of a block.
     #[inline(always)]
-    pub(crate) fn gain(&self, reading: &Imagined, prior: &Prior<'_>, block: usize) -> Lanes {
+    pub(crate) fn gain(
+        &self,
+        reading: &ReadingGain,
+        prior: &BlockPrior<'_>,
+        block: usize,
+    ) -> Lanes {
         match reading {
-            Imagined::Evaluated(reading) => reading.gain(prior),
-            Imagined::Mixed { first, weights } => {
+            ReadingGain::Evaluated(reading) => reading.gain(prior),
+            ReadingGain::Mixed { first, weights } => {
                 let mut gain = [0.0; LANES];
                 for (gains, weight) in
                     self.gains[block * self.readings.len() + first..].iter().zip(weights)
@@ -119,7 +131,7 @@ impl Basis {
     }
 }
 
-impl Mixtures {
+impl MixtureQueue {
     /// The places of the next so many readings.
     pub(crate) fn take(&mut self, count: usize) -> Range<usize> {
         self.taken += count;
@@ -127,7 +139,7 @@ impl Mixtures {
     }
 
     /// The next reading.
-    pub(crate) fn mix_next(&mut self) -> Imagined {
+    pub(crate) fn mix_next(&mut self) -> ReadingGain {
         let place = self.take(1).start;
         self.sum(&[(1.0, place)])
     }
@@ -139,9 +151,9 @@ impl Mixtures {
     }
 
     /// A sum of readings, each times a factor.
-    pub(crate) fn sum(&self, terms: &[(f64, usize)]) -> Imagined {
+    pub(crate) fn sum(&self, terms: &[(f64, usize)]) -> ReadingGain {
         let weights = sum(&self.weights, terms).into_iter().map(to_f32).collect();
-        Imagined::Mixed { first: self.first, weights }
+        ReadingGain::Mixed { first: self.first, weights }
     }
 }
 

@@ -1,6 +1,7 @@
-//! One imagined reading of cells at one distance, and what they gain by it.
+//! p(c | d) of one imagined reading of cells at one distance, and what they gain by it, Eq. (13).
 //!
-//! With the histogram h, the evidence t = c·(1 + e), e ≥ 0, and the entropy H of h, Eq. (13) is
+//! With the histogram h, its entropy H, and the evidence t = t_min·(1 + e), so that e ≥ 0 is by how
+//! much the evidence of a bin exceeds the least one, Eq. (13) is
 //!
 //! ```text
 //! I = (Σ ĥ·e + Σ h·w)/(1 + E) + E/(1 + E) − log(1 + E),   E = Σ h·e
@@ -10,11 +11,12 @@
 //! so that no product is normalised, one logarithm is enough, and nothing large cancels: weak
 //! evidence (small e) has small terms only.
 
-use crate::belief::Prior;
+use crate::belief::BlockPrior;
+use crate::numbers::to_f32;
 use covmap::lanes::{LANES, Lanes, ln};
 use covmap_model::{Outcome, SensorModel};
 
-/// p(c | d) of Eq. (9) for cells at one distance.
+/// p(c | d) of Eq. (9) for cells at one distance, in f64: what tables are made from.
 #[derive(Debug, Clone)]
 pub(crate) struct Evidence {
     /// t = p(c | d).
@@ -23,10 +25,10 @@ pub(crate) struct Evidence {
     v: Vec<f64>,
 }
 
-/// The same for many cells side by side: the bins from `first` on to which e is above 0. Far from
-/// its mean a Gaussian is nothing, so that these are few.
+/// The same as it is evaluated for many cells side by side: the bins for which e is above 0, from
+/// `first` on. Far from its mean a Gaussian is nothing, so that these are few.
 #[derive(Debug, Clone)]
-pub(crate) struct Reading {
+pub(crate) struct ExcessEvidence {
     first: usize,
     /// e and w.
     terms: Vec<(f32, f32)>,
@@ -44,7 +46,7 @@ impl Evidence {
         self.t.len()
     }
 
-    /// The entropy of a histogram after the reading \[nats\].
+    /// The entropy of a histogram after the reading \[nats\], by h and h·log h of every bin.
     pub(crate) fn entropy_after(&self, h: &[f64], u: &[f64]) -> f64 {
         let (mut z, mut s) = (0.0, 0.0);
         for ((h, u), (t, v)) in h.iter().zip(u).zip(self.t.iter().zip(&self.v)) {
@@ -54,26 +56,26 @@ impl Evidence {
         libm::log(z) - s / z
     }
 
-    pub(crate) fn reading(&self) -> Reading {
+    pub(crate) fn excess(&self) -> ExcessEvidence {
         let least = self.t.iter().copied().fold(f64::INFINITY, f64::min);
         let above: Vec<f64> = self.t.iter().map(|t| t / least - 1.0).collect();
         let first = above.iter().position(|e| *e > 0.0).unwrap_or(0);
         let end = above.iter().rposition(|e| *e > 0.0).map_or(first, |last| last + 1);
         let term = |e: &f64| (to_f32(*e), to_f32((1.0 + e) * libm::log1p(*e) - e));
-        Reading { first, terms: above[first..end].iter().map(term).collect() }
+        ExcessEvidence { first, terms: above[first..end].iter().map(term).collect() }
     }
 }
 
-impl Reading {
+impl ExcessEvidence {
     /// The information gain in every cell of a block, Eq. (13) \[nats\]: 0 where nothing can change.
     #[inline(always)]
-    pub(crate) fn gain(&self, prior: &Prior<'_>) -> Lanes {
+    pub(crate) fn gain(&self, prior: &BlockPrior<'_>) -> Lanes {
         let (mut above, mut sum) = ([0.0f32; LANES], [0.0f32; LANES]);
-        let rows = prior.h[self.first..].iter().zip(&prior.tilt[self.first..]);
-        for ((h, tilt), (e, w)) in rows.zip(&self.terms) {
+        let bins = prior.h[self.first..].iter().zip(&prior.h_hat[self.first..]);
+        for ((h, h_hat), (e, w)) in bins.zip(&self.terms) {
             for lane in 0..LANES {
                 above[lane] += h[lane] * e;
-                sum[lane] += tilt[lane] * e + h[lane] * w;
+                sum[lane] += h_hat[lane] * e + h[lane] * w;
             }
         }
         let (mut z, mut gain) = ([0.0; LANES], [0.0; LANES]);
@@ -88,11 +90,4 @@ impl Reading {
         }
         gain
     }
-}
-
-/// A number of the tables: kept as f32 for speed.
-pub(crate) fn to_f32(x: f64) -> f32 {
-    #[allow(clippy::cast_possible_truncation, reason = "that is the purpose")]
-    let x = x as f32;
-    x
 }

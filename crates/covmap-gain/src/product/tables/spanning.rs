@@ -1,13 +1,14 @@
-//! A few of many vectors, of which all others are sums.
+//! A few of many vectors of which all others are sums, nearly.
 
-/// Some of many vectors, and how nearly all are sums of these.
-pub(crate) struct Span {
+/// Some of many vectors, and what each weighs in all.
+pub(crate) struct SpanningSet {
+    /// The places of the chosen vectors.
     pub(crate) members: Vec<usize>,
     /// For each vector the weight of every member.
     pub(crate) weights: Vec<Vec<f64>>,
 }
 
-impl Span {
+impl SpanningSet {
     /// As few vectors as leave no number of any farther off than the tolerance: one after the
     /// other that one joins which is farthest from what those before it span.
     pub(crate) fn of(vectors: &[Vec<f64>], tolerance: f64) -> Self {
@@ -64,7 +65,7 @@ mod tests {
         let vectors: Vec<Vec<f64>> = (0..30)
             .map(|i| samples(&[f64::from(i), f64::from(i % 7) - 3.0, f64::from(i % 5)]))
             .collect();
-        let Span { members, weights } = Span::of(&vectors, 1e-9);
+        let SpanningSet { members, weights } = SpanningSet::of(&vectors, 1e-9);
         assert_eq!(members.len(), 3);
         for (vector, weights) in vectors.iter().zip(&weights) {
             for (i, x) in vector.iter().enumerate() {
@@ -76,7 +77,7 @@ mod tests {
 
     #[test]
     fn what_is_within_the_tolerance_needs_no_member() {
-        let small = Span::of(&[vec![0.1, -0.2], vec![0.0, 0.2]], 0.3);
+        let small = SpanningSet::of(&[vec![0.1, -0.2], vec![0.0, 0.2]], 0.3);
         assert!(small.members.is_empty() && small.weights == [vec![], vec![]]);
     }
 }

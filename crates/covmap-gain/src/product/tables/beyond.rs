@@ -1,25 +1,24 @@
-//! The outcomes that end beyond a ring.
+//! The outcomes that end beyond a ring: how their gains in a cell of the ring are summed.
 //!
-//! Their gains are interpolated between a few ranges and a few distances. Along the distance they
+//! They are interpolated between a few ranges and a few distances. Along the distance they
 //! are taken apart into polynomials: how a gain changes within a ring is much smaller than the
 //! gain, so that its coefficients need fewer ranges. (Cosines are orthogonal whatever the distances
 //! are: taking apart by itself changes nothing.)
 
-use super::basis::{Imagined, Mixtures};
-use super::evidence::to_f32;
-use super::span::Span;
-use crate::sight::as_f64;
+use super::basis::{MixtureQueue, ReadingGain};
+use super::spanning::SpanningSet;
+use crate::numbers::{as_f64, to_f32};
 use covmap::lanes::TOGETHER;
 use std::f64::consts::PI;
 
-/// The gain of each outcome in a cell is a sum over some readings, each with a weight by the
-/// outcome and a factor by the cell.
+/// The gain of each outcome in each cell, as a sum over some of the ring's readings: the gain of the
+/// reading, times its weight in the outcome, times its factor in the cell.
 #[derive(Debug, Clone)]
-pub(crate) struct Front {
+pub(crate) struct BeyondOutcomes {
     /// The nearest of the outcomes.
-    pub(crate) first: usize,
+    pub(crate) nearest: usize,
     /// The first of the readings, and how many there are.
-    pub(crate) base: usize,
+    pub(crate) first: usize,
     pub(crate) count: usize,
     /// For [`TOGETHER`] readings their weights in every outcome from the nearest on; 0 past the
     /// last one.
@@ -28,9 +27,10 @@ pub(crate) struct Front {
     pub(crate) factors: Vec<Vec<Vec<[f32; TOGETHER]>>>,
 }
 
-/// The outcomes as they are interpolated: by some ranges and distances.
+/// The same outcomes before they are reduced: interpolated between a lattice of ranges and distances.
 pub(crate) struct Lattice {
-    pub(crate) first: usize,
+    /// The nearest of the outcomes.
+    pub(crate) nearest: usize,
     /// For each outcome the weight of every range.
     pub(crate) of_outcomes: Vec<Vec<f64>>,
     /// For each beam, for each of its cells, the weight of every distance.
@@ -42,13 +42,17 @@ pub(crate) struct Lattice {
 }
 
 impl Lattice {
-    /// As few readings as allowed in place of the next ones of all in front, one for each range and
-    /// distance. They are added to those of the ring.
-    pub(crate) fn reduce(self, front: &mut Mixtures, readings: &mut Vec<Imagined>) -> Front {
-        let Self { first, of_outcomes, of_cells, distances, tolerance } = self;
-        let base = readings.len();
+    /// Takes the lattice's readings, one for each range and distance, from the queue of all that are
+    /// in front; adds as few as allowed in place of them to the ring's `readings`.
+    pub(crate) fn reduce(
+        self,
+        queue: &mut MixtureQueue,
+        readings: &mut Vec<ReadingGain>,
+    ) -> BeyondOutcomes {
+        let Self { nearest, of_outcomes, of_cells, distances, tolerance } = self;
+        let first = readings.len();
         let ranges = of_outcomes.first().map_or(0, Vec::len);
-        let places = front.take(ranges * distances);
+        let places = queue.take(ranges * distances);
         let mut weights: Vec<Vec<f64>> = vec![Vec::new(); of_outcomes.len()];
         let mut factors: Vec<Vec<Vec<f64>>> =
             of_cells.iter().map(|cells| vec![Vec::new(); cells.len()]).collect();
@@ -59,11 +63,11 @@ impl Lattice {
                 let at = places.start + range * distances;
                 cosines.iter().zip(at..).map(|(c, at)| (scale * c, at)).collect::<Vec<_>>()
             };
-            let vector = |range| front.gains(&coefficient(range));
+            let vector = |range| queue.gains(&coefficient(range));
             let vectors: Vec<Vec<f64>> = (0..ranges).map(vector).collect();
-            let span = Span::of(&vectors, tolerance);
+            let span = SpanningSet::of(&vectors, tolerance);
             for (i, member) in span.members.iter().enumerate() {
-                readings.push(front.sum(&coefficient(*member)));
+                readings.push(queue.sum(&coefficient(*member)));
                 for (weights, of_ranges) in weights.iter_mut().zip(&of_outcomes) {
                     let of_range = |(weight, of): (&f64, &Vec<f64>)| weight * of[i];
                     weights.push(of_ranges.iter().zip(&span.weights).map(of_range).sum());
@@ -74,9 +78,9 @@ impl Lattice {
                 }
             }
         }
-        let count = readings.len() - base;
+        let count = readings.len() - first;
         let factors = factors.iter().map(|of_cells| together(of_cells, count)).collect();
-        Front { first, base, count, weights: together(&weights, count), factors }
+        BeyondOutcomes { nearest, first, count, weights: together(&weights, count), factors }
     }
 }
 

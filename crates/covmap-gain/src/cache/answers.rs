@@ -1,0 +1,79 @@
+//! What a cache answers, once it was refreshed.
+
+use super::GainCache;
+use crate::view_points::group_and_lane;
+use crate::{Stencil, ViewPoints};
+
+impl GainCache {
+    /// The cells around a view-point.
+    pub fn stencil(&self) -> &Stencil {
+        &self.stencil
+    }
+
+    /// Whether a cell is a reason to measure from so far away \[m\].
+    pub fn is_reason(&self, index: usize, distance: f32) -> bool {
+        self.belief.is_reason(index, distance)
+    }
+
+    /// A cell's entropy \[nats\].
+    pub fn entropy(&self, index: usize) -> f32 {
+        self.belief.entropy(index)
+    }
+
+    /// E\[I(l)\] of a view-point, or an upper bound of it \[nats\]: see
+    /// [`is_exact`](Self::is_exact).
+    pub fn gain(&self, view_point: usize) -> f64 {
+        let (group, lane) = group_and_lane(self.grid.width(), view_point);
+        self.mean_gain[group][lane]
+    }
+
+    /// Whether E\[I(l)\] of a view-point is up to date, not only a bound of it.
+    pub fn is_exact(&self, view_point: usize) -> bool {
+        let (group, lane) = group_and_lane(self.grid.width(), view_point);
+        self.groups[group].gain >> lane & 1 == 1
+    }
+
+    /// Whether a gain was met since this was last asked that is above its bound.
+    pub fn take_exceeded(&mut self) -> bool {
+        std::mem::take(&mut self.exceeded)
+    }
+
+    /// Whether a view-point holds a reason to measure in sight: a cell that is no farther away than
+    /// its limit.
+    pub fn has_reason(&self, view_point: usize) -> bool {
+        let (group, lane) = group_and_lane(self.grid.width(), view_point);
+        self.groups[group].has_reason >> lane & 1 == 1
+    }
+
+    /// Those of some view-points which hold a reason to measure in sight, in row-major order.
+    pub fn with_reason(&self, view_points: &ViewPoints) -> Vec<usize> {
+        view_points.indices(|group| self.groups[group].has_reason)
+    }
+
+    /// V(l) of a view-point: cells by their row-major index, with their distance from the sensor
+    /// \[m\], in row-major order; a cell in two beams once, with the shorter distance.
+    pub fn cells_in_sight(&self, view_point: usize) -> Vec<(usize, f32)> {
+        let mut seen: Vec<(usize, f32)> = self.beam_by_beam(view_point).collect();
+        seen.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        seen.dedup_by_key(|(index, _)| *index);
+        seen
+    }
+
+    /// Whether a view-point holds a cell in sight that `is_wanted`, by its row-major index and its
+    /// distance from the sensor \[m\].
+    pub fn sees(&self, view_point: usize, is_wanted: impl Fn(&(usize, f32)) -> bool) -> bool {
+        self.beam_by_beam(view_point).any(|cell| is_wanted(&cell))
+    }
+
+    /// The cells in sight of a view-point, beam by beam.
+    fn beam_by_beam(&self, view_point: usize) -> impl Iterator<Item = (usize, f32)> {
+        let from = self.grid.cell(view_point);
+        let (group, lane) = group_and_lane(self.grid.width(), view_point);
+        let in_sight = &self.in_sight[group * self.beams.len()..];
+        self.beams.iter().zip(in_sight).flat_map(move |(beam, in_sight)| {
+            beam.cells_in_sight(in_sight[lane]).filter_map(move |(cell, distance)| {
+                Some((self.grid.index(from.offset(cell.dx, cell.dy))?, distance))
+            })
+        })
+    }
+}

@@ -1,0 +1,198 @@
+//! Which cached values are up to date, and whom a change of a cell makes stale.
+//!
+//! The values of a (group of view-points, beam) depend on the first cells of the beam, in the beam's
+//! order of distance, up to its [`horizon`](BeamState::horizon). A change of a cell is *marked*, and
+//! told to its onlookers when values are next asked for: to every (group, beam) that has the cell in
+//! its stencil. Those whose horizon it lies within forget what depends on it.
+
+use crate::Stencil;
+use crate::view_points::{group_and_lane, groups_per_row};
+use covmap::Grid;
+use covmap::lanes::LANES;
+
+/// What about a cell changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum CellChange {
+    /// What it reflects, or whether it can change.
+    Reflection,
+    /// Nothing of that, but its posterior.
+    Posterior,
+    /// The distance up to which it is a reason to measure.
+    Limit,
+}
+
+impl CellChange {
+    /// All, in the order of their numbers.
+    const ALL: [Self; 3] = [Self::Reflection, Self::Posterior, Self::Limit];
+}
+
+/// One beam of a group of view-points: which of them are up to date, bit by bit.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct BeamState {
+    /// V(l) is.
+    pub(super) sight: u16,
+    /// Whether there is a reason to measure in sight is.
+    pub(super) reason: u16,
+    /// E\[I\] is.
+    pub(super) gain: u16,
+    /// E\[I\] or an upper bound of it is.
+    pub(super) bound: u16,
+    /// There is a reason to measure in sight.
+    pub(super) has_reason: u16,
+    /// The values depend on the first so many cells of the beam.
+    pub(super) horizon: u16,
+}
+
+/// The same of a group of view-points over all beams, bit by bit.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct GroupState {
+    /// Sight and reasons of all beams are up to date.
+    pub(super) sight: u16,
+    /// The gains of all beams are.
+    pub(super) gain: u16,
+    /// The gains of all beams or upper bounds of them are.
+    pub(super) bound: u16,
+    /// There is a reason to measure in sight of some beam.
+    pub(super) has_reason: u16,
+}
+
+impl BeamState {
+    /// Forgets what a change within the horizon makes stale.
+    fn forget(&mut self, change: CellChange) {
+        match change {
+            CellChange::Reflection => {
+                (self.sight, self.reason, self.gain, self.bound) = (0, 0, 0, 0);
+            }
+            CellChange::Posterior => (self.gain, self.bound) = (0, 0),
+            CellChange::Limit => self.reason = 0,
+        }
+    }
+
+    /// Forgets gain and bound, whatever changed.
+    pub(super) fn forget_gain(&mut self) {
+        self.forget(CellChange::Posterior);
+    }
+}
+
+impl GroupState {
+    fn forget(&mut self, change: CellChange) {
+        match change {
+            CellChange::Reflection => (self.sight, self.gain, self.bound) = (0, 0, 0),
+            CellChange::Posterior => (self.gain, self.bound) = (0, 0),
+            CellChange::Limit => self.sight = 0,
+        }
+    }
+
+    /// Forgets gain and bound, whatever changed.
+    pub(super) fn forget_gain(&mut self) {
+        self.forget(CellChange::Posterior);
+    }
+}
+
+/// Neighbouring view-points of a row that have a cell in the same beam: their places from the cell,
+/// and the least rank that it has in the beam's order of distance.
+#[derive(Debug, Clone, Copy)]
+struct OnlookerRun {
+    dy: i32,
+    first: i32,
+    last: i32,
+    beam: usize,
+    rank: u16,
+}
+
+/// The longest run: ranks differ little within it.
+const LONGEST: i32 = 6;
+
+/// From where a cell is seen, and the cells with a change that their onlookers were not told.
+#[derive(Debug, Clone)]
+pub(super) struct Onlookers {
+    grid: Grid,
+    /// Of any cell: a stencil, seen the other way round.
+    runs: Vec<OnlookerRun>,
+    /// For each block of cells, for each kind of change, a bit for each lane.
+    marked: Vec<[u16; CellChange::ALL.len()]>,
+    /// The blocks with a mark.
+    touched: Vec<usize>,
+}
+
+impl Onlookers {
+    pub(super) fn new(stencil: &Stencil, grid: Grid) -> Self {
+        let runs = stencil.beams.iter().enumerate().flat_map(|(beam, cone)| {
+            let mut places: Vec<(i32, i32, u16)> =
+                (0u16..).zip(&cone.cells).map(|(rank, cell)| (-cell.dy, -cell.dx, rank)).collect();
+            places.sort_unstable();
+            let mut runs: Vec<OnlookerRun> = Vec::new();
+            for (dy, dx, rank) in places {
+                match runs.last_mut() {
+                    Some(run) if run.dy == dy && run.last + 1 == dx && dx - run.first < LONGEST => {
+                        (run.last, run.rank) = (dx, run.rank.min(rank));
+                    }
+                    _ => runs.push(OnlookerRun { dy, first: dx, last: dx, beam, rank }),
+                }
+            }
+            runs
+        });
+        Self {
+            grid,
+            runs: runs.collect(),
+            marked: vec![[0; CellChange::ALL.len()]; grid.height() * groups_per_row(&grid)],
+            touched: Vec::new(),
+        }
+    }
+
+    /// Takes note of a change of a cell, by its row-major index.
+    pub(super) fn mark(&mut self, index: usize, change: CellChange) {
+        let (block, lane) = group_and_lane(self.grid.width(), index);
+        if self.marked[block] == [0; CellChange::ALL.len()] {
+            self.touched.push(block);
+        }
+        self.marked[block][change as usize] |= 1 << lane;
+    }
+
+    /// Makes stale what depends on marked cells, and forgets the marks. There is a state for each
+    /// group, and for each group one for each beam.
+    pub(super) fn tell(
+        &mut self,
+        beams: usize,
+        groups: &mut [GroupState],
+        states: &mut [BeamState],
+    ) {
+        self.for_each_onlooker(|change, group, beam, rank| {
+            let state = &mut states[group * beams + beam];
+            if rank < state.horizon {
+                state.forget(change);
+                groups[group].forget(change);
+            }
+        });
+    }
+
+    /// Every change, with the group and the beam of an onlooker, and a rank that the changed cells of
+    /// a block have at least. Forgets the marks.
+    fn for_each_onlooker(&mut self, mut tell: impl FnMut(CellChange, usize, usize, u16)) {
+        let per_row = groups_per_row(&self.grid);
+        let lanes = i32::from(u8::try_from(LANES).unwrap_or(0));
+        let signed = |n: usize| i32::try_from(n).unwrap_or(i32::MAX);
+        for block in self.touched.drain(..) {
+            let (x, y) = (signed(block % per_row) * lanes, signed(block / per_row));
+            let marked = std::mem::take(&mut self.marked[block]);
+            let marked = CellChange::ALL.into_iter().zip(marked);
+            for (change, bits) in marked.filter(|(_, bits)| *bits != 0) {
+                let low = x + bits.trailing_zeros().cast_signed();
+                let high = x + 15 - bits.leading_zeros().cast_signed();
+                for run in &self.runs {
+                    let y = y + run.dy;
+                    if y < 0 || y >= signed(self.grid.height()) {
+                        continue;
+                    }
+                    let first = (low + run.first).div_euclid(lanes).max(0);
+                    let last = (high + run.last).div_euclid(lanes).min(signed(per_row) - 1);
+                    for group in first..=last {
+                        #[allow(clippy::cast_sign_loss, reason = "inside of the grid")]
+                        let group = y as usize * per_row + group as usize;
+                        tell(change, group, run.beam, run.rank);
+                    }
+                }
+            }
+        }
+    }
+}

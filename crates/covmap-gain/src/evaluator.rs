@@ -1,0 +1,91 @@
+//! The seam between the cache, which knows what is stale, and the fast evaluations of E\[I\], which
+//! know how an imagined reading changes a histogram.
+//!
+//! An evaluator is told which blocks of the belief changed. Asked for the gains of some beams, given
+//! p(d | c) of their likely outcomes, it answers Σ_d p(d | c) · Σ_i I(h(c_i) | d) for each. It may
+//! have an upper bound of this that is cheaper; without one, all that is asked for is evaluated.
+
+use crate::belief::Belief;
+use crate::memory::Size;
+use crate::outcomes::{AskedRow, RowGains};
+use crate::product::Product;
+use crate::sight::{GroupLikelihood, RasterBeam};
+use crate::{Stencil, Upkeep};
+use covmap::Grid;
+use covmap::lanes::{LANES, Lanes};
+use covmap_model::SensorModel;
+use pulp::Arch;
+
+/// How E\[I\] is evaluated fast: by the update that imagined readings go through.
+#[derive(Debug, Clone)]
+pub(crate) enum Evaluator {
+    /// The product of Eq. (9).
+    Product(Box<Product>),
+}
+
+impl Evaluator {
+    /// The evaluator of a model. Bounds are worth their memory only where gains are kept.
+    pub(crate) fn new(
+        model: &SensorModel,
+        stencil: &Stencil,
+        grid: Grid,
+        belief: &Belief,
+        upkeep: Upkeep,
+    ) -> Self {
+        let with_bounds = upkeep == Upkeep::Kept;
+        Self::Product(Box::new(Product::new(model, stencil, grid, belief, with_bounds)))
+    }
+
+    /// About how many bytes this takes, with what its tables need while they are made.
+    pub(crate) fn bytes(size: &Size) -> f64 {
+        Product::bytes(size, size.upkeep == Upkeep::Kept)
+    }
+
+    /// Takes over blocks of cells that changed, given in ascending order.
+    pub(crate) fn update(&mut self, arch: Arch, belief: &Belief, changed: &[usize]) {
+        match self {
+            Self::Product(product) => product.update(arch, belief, changed),
+        }
+    }
+
+    /// How many rows of cells on either side of a row of view-points matter to its gains.
+    pub(crate) fn border(&self) -> usize {
+        match self {
+            Self::Product(product) => product.border(),
+        }
+    }
+
+    /// The gains of all beams of some rows, which are given in ascending order of y.
+    pub(crate) fn gains(
+        &mut self,
+        arch: Arch,
+        belief: &Belief,
+        rows: &[AskedRow],
+    ) -> Vec<RowGains> {
+        match self {
+            Self::Product(product) => product.gains(arch, belief, rows),
+        }
+    }
+
+    /// Whether [`bound`](Self::bound) is worth asking.
+    pub(crate) fn has_bound(&self) -> bool {
+        match self {
+            Self::Product(product) => product.has_bound(),
+        }
+    }
+
+    /// An upper bound of the gain of a beam from each view-point of a group \[nats\]; infinite if
+    /// there is none. `here` is the index of the group's first view-point in the bordered rasters.
+    #[inline(always)]
+    pub(crate) fn bound(
+        &self,
+        beam: &RasterBeam,
+        here: usize,
+        likelihood: &GroupLikelihood,
+    ) -> Lanes {
+        let bound = match self {
+            Self::Product(product) => product.bound(beam, here, likelihood),
+        };
+        bound.unwrap_or([f32::INFINITY; LANES])
+    }
+}

@@ -1,0 +1,15 @@
+//! Conversions of numbers that lose nothing that matters.
+
+/// A count. Exact below 2⁵³.
+pub(crate) fn as_f64(count: usize) -> f64 {
+    #[allow(clippy::cast_precision_loss, reason = "counts are small")]
+    let count = count as f64;
+    count
+}
+
+/// A number of a table, which is kept as f32 for speed.
+pub(crate) fn to_f32(x: f64) -> f32 {
+    #[allow(clippy::cast_possible_truncation, reason = "that is the purpose")]
+    let x = x as f32;
+    x
+}

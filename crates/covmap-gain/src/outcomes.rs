@@ -1,0 +1,31 @@
+//! What an evaluator is asked: some beams of some rows of view-points, with their likely outcomes.
+
+use covmap::lanes::{LANES, Lanes};
+use std::ops::Range;
+
+/// One beam of one group of view-points.
+#[derive(Debug, Clone)]
+pub(crate) struct GroupBeam {
+    /// The group's place in its row.
+    pub(crate) group: usize,
+    pub(crate) beam: usize,
+    /// Which of the row's outcomes are its own.
+    pub(crate) outcomes: Range<usize>,
+}
+
+/// Beams of one row of view-points whose gains are asked for.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct AskedRow {
+    /// The row of the grid.
+    pub(crate) y: usize,
+    pub(crate) beams: Vec<GroupBeam>,
+    /// By [`Stencil::outcome`](crate::Stencil::outcome)'s index: the likely outcomes of the first
+    /// beam in ascending order, then those of the next, and so on.
+    pub(crate) outcomes: Vec<usize>,
+    /// p(d | c) of each of these, from each view-point of the group: 0 from those that do not ask.
+    pub(crate) probabilities: Vec<Lanes>,
+}
+
+/// The answer: E\[I\] of each beam of an [`AskedRow`], from each view-point of its group \[nats\].
+/// From view-points that did not ask it means nothing.
+pub(crate) type RowGains = Vec<[f64; LANES]>;

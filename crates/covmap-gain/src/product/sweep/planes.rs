@@ -1,0 +1,115 @@
+//! The gains of the cells around some rows of view-points, at one ring.
+
+use crate::belief::Belief;
+use crate::product::tables::basis::Basis;
+use crate::product::tables::rings::DistanceRing;
+use covmap::Grid;
+use covmap::lanes::LANES;
+use pulp::{Simd, WithSimd};
+use std::ops::Range;
+
+use crate::view_points::groups_per_row;
+
+/// How the planes of gains lie in memory: row of cells by row, in each row reading by reading, for
+/// each reading the cells of the row with a border on either side.
+///
+/// So what a beam sums over lies at constant offsets from its view-point, whatever the view-point,
+/// and the readings of a cell one `stride` apart.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Layout {
+    /// Rows and columns around the grid's cells, as many as a stencil needs, in whole blocks.
+    pub(super) border: usize,
+    /// From one reading of a row to the next.
+    pub(super) stride: usize,
+    /// From one row of cells to the next.
+    pub(super) row: usize,
+}
+
+impl Layout {
+    /// For as many readings as the ring with the most of them has.
+    pub(super) fn new(grid: &Grid, radius: i32, readings: usize) -> Self {
+        let border = usize::try_from(radius).unwrap_or(0).next_multiple_of(LANES);
+        let stride = grid.width().next_multiple_of(LANES) + 2 * border;
+        Self { border, stride, row: stride * readings.max(1) }
+    }
+}
+
+/// The planes of a ring, and in which blocks which of its readings are needed.
+#[derive(Debug, Default)]
+pub(super) struct GainPlanes {
+    /// 0 outside of the grid.
+    pub(super) gains: Vec<f32>,
+    /// For each block of cells bit by bit.
+    pub(super) needed: Vec<u64>,
+    /// The rows that were inside of the grid when these were last used.
+    inside: Range<usize>,
+}
+
+impl Clone for GainPlanes {
+    /// Empty ones: what they hold is never needed again.
+    fn clone(&self) -> Self {
+        Self::default()
+    }
+}
+
+impl GainPlanes {
+    /// Makes room for so many rows of cells, some of them `inside` of the grid, of so many blocks.
+    /// Memory that is asked for as zeros costs nothing until it is used, and most rows outside were
+    /// outside before.
+    pub(super) fn prepare(
+        &mut self,
+        layout: Layout,
+        rows: usize,
+        inside: Range<usize>,
+        blocks: usize,
+    ) {
+        let row = layout.row;
+        if self.gains.len() < rows * row {
+            *self = Self { gains: vec![0.0; rows * row], ..Self::default() };
+        }
+        for outside in self.inside.clone().filter(|y| !inside.contains(y)) {
+            self.gains[outside * row..(outside + 1) * row].fill(0.0);
+        }
+        self.inside = inside;
+        self.needed.resize(rows * blocks, 0);
+    }
+}
+
+/// Finds the gains of one row of cells by the readings that are needed.
+pub(super) struct FillRow<'a> {
+    pub(super) grid: &'a Grid,
+    pub(super) basis: &'a Basis,
+    pub(super) layout: Layout,
+    pub(super) ring: &'a DistanceRing,
+    pub(super) belief: &'a Belief,
+    /// The row of the grid.
+    pub(super) y: usize,
+    /// Block by block.
+    pub(super) needed: &'a [u64],
+    /// The row's gains.
+    pub(super) gains: &'a mut [f32],
+}
+
+impl WithSimd for FillRow<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        let Self { grid, basis, layout, ring, belief, y, needed, gains } = self;
+        for (x, needed) in needed.iter().enumerate().filter(|(_, needed)| **needed != 0) {
+            let block = y * groups_per_row(grid) + x;
+            let prior = belief.prior(block);
+            let column = layout.border + x * LANES;
+            // Bit by bit: to ask reading by reading, a processor would guess wrong too often.
+            let mut left = *needed;
+            while left != 0 {
+                let first = left.trailing_zeros() as usize;
+                left &= left - 1;
+                for (i, reading) in ring.readings.iter().enumerate().skip(first).step_by(64) {
+                    let at = i * layout.stride + column;
+                    gains[at..at + LANES].copy_from_slice(&basis.gain(reading, &prior, block));
+                }
+            }
+        }
+    }
+}
