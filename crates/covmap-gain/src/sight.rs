@@ -201,7 +201,7 @@ impl RasterBeam {
             let traced = self.stencil.rings[..traced].last().map_or(0, |ring| ring.end);
             cells = cells.max(covered).max(traced);
         }
-        #[allow(clippy::cast_possible_truncation, reason = "a planner refuses beams of more cells")]
+        #[allow(clippy::cast_possible_truncation, reason = "longer beams are refused")]
         let cells = cells as u16;
         cells
     }
