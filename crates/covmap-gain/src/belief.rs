@@ -7,6 +7,7 @@
 //! histograms bin by bin, so that a bin of all cells of a block is one vector.
 
 use crate::memory::Size;
+use crate::numbers::to_f32;
 use crate::view_points::{group_and_lane, groups_per_row};
 use crate::{RangePrediction, Stencil};
 use covmap::lanes::{LANES, Lanes};
@@ -32,22 +33,71 @@ pub(crate) struct Belief {
     entropies: Vec<Lanes>,
     /// By block: 1 for a cell that a measurement can change, else 0.
     changeable: Vec<Lanes>,
-    /// By block and bin: h and ĥ of [`BlockPrior`].
-    h: Vec<Lanes>,
-    h_hat: Vec<Lanes>,
+    /// By row, bin and column, with [`PAD`] columns on either side: h and ĥ of [`Prior`]; 0 where
+    /// nothing can change.
+    h: Vec<f32>,
+    h_hat: Vec<f32>,
+    /// Bordered: the expected coverage of a known cell, [`NOT_KNOWN`] of another one of the grid.
+    expected: Vec<f32>,
     /// The blocks with changes since they were last asked for, and which these are.
     changed: Vec<usize>,
     is_changed: Vec<bool>,
 }
 
+/// So many columns on either side of a row can be read, past its cells, as if they were cells.
+pub(crate) const PAD: usize = LANES;
+
+/// In place of an expected coverage: no reading has touched the cell.
+pub(crate) const NOT_KNOWN: f32 = -1.0;
+
+/// The histograms of [`LANES`] neighbouring cells of a row, before a reading.
+#[derive(Clone, Copy)]
+pub(crate) struct Prior<'a> {
+    h: &'a [f32],
+    h_hat: &'a [f32],
+    stride: usize,
+}
+
+impl<'a> Prior<'a> {
+    /// h of a bin, of each cell.
+    #[inline(always)]
+    pub(crate) fn h(&self, bin: usize) -> &'a Lanes {
+        lanes_at(self.h, bin * self.stride)
+    }
+
+    /// ĥ = h·(log h + H) of a bin, with the entropy H of h, of each cell.
+    #[inline(always)]
+    pub(crate) fn h_hat(&self, bin: usize) -> &'a Lanes {
+        lanes_at(self.h_hat, bin * self.stride)
+    }
+}
+
 /// The histograms of a block of cells, before a reading.
 pub(crate) struct BlockPrior<'a> {
-    /// h of every bin.
-    pub(crate) h: &'a [Lanes],
-    /// ĥ = h·(log h + H) of every bin, with the entropy H of h.
-    pub(crate) h_hat: &'a [Lanes],
+    prior: Prior<'a>,
     /// 1 for a cell that a measurement can change, else 0.
     pub(crate) changeable: &'a Lanes,
+}
+
+impl<'a> BlockPrior<'a> {
+    /// [`Prior::h`].
+    #[inline(always)]
+    pub(crate) fn h(&self, bin: usize) -> &'a Lanes {
+        self.prior.h(bin)
+    }
+
+    /// [`Prior::h_hat`].
+    #[inline(always)]
+    pub(crate) fn h_hat(&self, bin: usize) -> &'a Lanes {
+        self.prior.h_hat(bin)
+    }
+}
+
+/// The [`LANES`] numbers from a place on.
+#[inline(always)]
+pub(crate) fn lanes_at(numbers: &[f32], place: usize) -> &Lanes {
+    let Some(lanes) = numbers[place..].first_chunk() else { panic!("rows are padded") };
+    lanes
 }
 
 /// Codes past the last bin.
@@ -83,9 +133,9 @@ impl Belief {
             reflecting: vec![0; bordered],
             entropies: vec![none; blocks],
             changeable: vec![none; blocks],
-            // Past the last cell of a row any histogram will do, if its numbers are tame.
-            h: vec![[1.0; LANES]; blocks * bins],
-            h_hat: vec![none; blocks * bins],
+            h: vec![0.0; grid.height() * bins * padded(grid.width())],
+            h_hat: vec![0.0; grid.height() * bins * padded(grid.width())],
+            expected: vec![0.0; bordered],
             changed: Vec::new(),
             is_changed: vec![false; blocks],
         };
@@ -99,11 +149,12 @@ impl Belief {
 
     /// About how many bytes this takes.
     pub(crate) fn bytes(size: &Size) -> f64 {
-        // Codes, limits, reflections, and how many reflect.
-        const BORDERED: f64 = 1.0 + 4.0 + 8.0 + 1.0;
-        // Of a block entropies, whether it is changeable, and h and ĥ of every bin.
-        let lanes = 64.0 * (2.0 + 2.0 * size.bins);
-        BORDERED * size.bordered() + (lanes + 9.0) * size.blocks()
+        // Codes, limits, reflections, how many reflect, and expected coverages.
+        const BORDERED: f64 = 1.0 + 4.0 + 8.0 + 1.0 + 4.0;
+        // Of a block entropies, whether it is changeable, and that it changed.
+        const BLOCK: f64 = 128.0 + 9.0;
+        let histograms = 8.0 * size.bins * size.padded();
+        BORDERED * size.bordered() + BLOCK * size.blocks() + histograms
     }
 
     /// The index of a cell in the bordered rasters, by its row-major index.
@@ -124,13 +175,6 @@ impl Belief {
         if !std::mem::replace(&mut self.is_changed[block], true) {
             self.changed.push(block);
         }
-        let bins = block * self.bins..(block + 1) * self.bins;
-        let entropy = -posterior.iter().map(|p| p * libm::log(*p)).sum::<f64>();
-        let (h, h_hat) = (&mut self.h[bins.clone()], &mut self.h_hat[bins]);
-        for ((h, h_hat), p) in h.iter_mut().zip(h_hat).zip(posterior.iter()) {
-            #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
-            ((h[lane], h_hat[lane]) = (*p as f32, (p * (libm::log(*p) + entropy)) as f32));
-        }
         let code = if map.is_pinned(cell) {
             self.bins + PINNED
         } else if map.is_known(cell) {
@@ -139,11 +183,15 @@ impl Belief {
             self.bins + UNKNOWN
         };
         let changeable = code <= self.bins + UNKNOWN;
+        self.write_histogram(index, posterior, changeable);
         self.changeable[block][lane] = f32::from(u8::from(changeable));
         #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
         (self.entropies[block][lane] = map.entropy(cell) as f32);
         let bordered = self.bordered(index);
         let rho = self.reflection_of[code];
+        #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
+        let expected = if code == self.bins + UNKNOWN { NOT_KNOWN } else { map.mean(cell) as f32 };
+        self.expected[bordered] = expected;
         let old = std::mem::replace(&mut self.reflections[bordered], rho);
         if (old > 0.0) != (rho > 0.0) {
             // At the very beginning of the raster there are fewer.
@@ -154,6 +202,37 @@ impl Belief {
         #[allow(clippy::cast_possible_truncation, reason = "at most 67 codes")]
         let old = std::mem::replace(&mut self.codes[bordered], code as u8);
         usize::from(old) != code
+    }
+
+    fn write_histogram(&mut self, index: usize, posterior: &[f64], changeable: bool) {
+        let (x, y) = (index % self.grid.width(), index / self.grid.width());
+        let (first, stride) = (self.row(y) + PAD + x, padded(self.grid.width()));
+        let entropy = -posterior.iter().map(|p| p * libm::log(*p)).sum::<f64>();
+        for (bin, p) in posterior.iter().enumerate() {
+            let at = first + bin * stride;
+            let tilted = p * (libm::log(*p) + entropy);
+            let numbers = if changeable { (*p, tilted) } else { (0.0, 0.0) };
+            (self.h[at], self.h_hat[at]) = (to_f32(numbers.0), to_f32(numbers.1));
+        }
+    }
+
+    /// Where the histograms of a row begin.
+    fn row(&self, y: usize) -> usize {
+        y * self.bins * padded(self.grid.width())
+    }
+
+    /// The histograms of the cells from column `x` of row `y` on, which may begin up to [`PAD`]
+    /// columns before the first one, and end so many past the last.
+    #[inline(always)]
+    pub(crate) fn prior_at(&self, y: usize, x: isize) -> Prior<'_> {
+        let place = self.row(y) + PAD.wrapping_add_signed(x);
+        let stride = padded(self.grid.width());
+        Prior { h: &self.h[place..], h_hat: &self.h_hat[place..], stride }
+    }
+
+    /// Expected coverages, a bordered raster.
+    pub(crate) fn expected(&self) -> &[f32] {
+        &self.expected
     }
 
     /// The blocks with changes since this was last asked, in ascending order.
@@ -207,15 +286,21 @@ impl Belief {
     /// The histograms of a block.
     #[inline(always)]
     pub(crate) fn prior(&self, block: usize) -> BlockPrior<'_> {
-        let bins = block * self.bins..(block + 1) * self.bins;
-        let (h, h_hat) = (&self.h[bins.clone()], &self.h_hat[bins]);
-        BlockPrior { h, h_hat, changeable: &self.changeable[block] }
+        let per_row = groups_per_row(&self.grid);
+        let x = (block % per_row * LANES).cast_signed();
+        let prior = self.prior_at(block / per_row, x);
+        BlockPrior { prior, changeable: &self.changeable[block] }
     }
 
     /// How far apart two rows lie in the bordered rasters.
     pub(crate) fn raster_width(&self) -> usize {
         self.grid.width() + 2 * self.border
     }
+}
+
+/// The columns of a padded row of so many cells.
+pub(crate) fn padded(width: usize) -> usize {
+    width.next_multiple_of(LANES) + 2 * PAD
 }
 
 #[cfg(test)]

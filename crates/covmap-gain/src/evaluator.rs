@@ -6,6 +6,7 @@
 //! have an upper bound of this that is cheaper; without one, all that is asked for is evaluated.
 
 use crate::belief::Belief;
+use crate::cause::Cause;
 use crate::memory::Size;
 use crate::outcomes::{AskedRow, RowGains};
 use crate::product::Product;
@@ -13,7 +14,7 @@ use crate::sight::{GroupLikelihood, RasterBeam};
 use crate::{Stencil, Upkeep};
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
-use covmap_model::SensorModel;
+use covmap_model::{SensorModel, Update};
 use pulp::Arch;
 
 /// How E\[I\] is evaluated fast: by the update that imagined readings go through.
@@ -21,6 +22,8 @@ use pulp::Arch;
 pub(crate) enum Evaluator {
     /// The product of Eq. (9).
     Product(Box<Product>),
+    /// The update by cause.
+    Cause(Box<Cause>),
 }
 
 impl Evaluator {
@@ -32,19 +35,28 @@ impl Evaluator {
         belief: &Belief,
         upkeep: Upkeep,
     ) -> Self {
-        let with_bounds = upkeep == Upkeep::Kept;
-        Self::Product(Box::new(Product::new(model, stencil, grid, belief, with_bounds)))
+        match &model.parameters().update {
+            Update::Product(_) => {
+                let with_bounds = upkeep == Upkeep::Kept;
+                Self::Product(Box::new(Product::new(model, stencil, grid, belief, with_bounds)))
+            }
+            Update::Cause(parameters) => {
+                Self::Cause(Box::new(Cause::new(model, parameters, stencil, grid, belief)))
+            }
+        }
     }
 
     /// About how many bytes this takes, with what its tables need while they are made.
     pub(crate) fn bytes(size: &Size) -> f64 {
-        Product::bytes(size, size.upkeep == Upkeep::Kept)
+        // Of the update that needs more.
+        Product::bytes(size, size.upkeep == Upkeep::Kept).max(Cause::bytes(size))
     }
 
     /// Takes over blocks of cells that changed, given in ascending order.
     pub(crate) fn update(&mut self, arch: Arch, belief: &Belief, changed: &[usize]) {
         match self {
             Self::Product(product) => product.update(arch, belief, changed),
+            Self::Cause(cause) => cause.update(arch, belief, changed),
         }
     }
 
@@ -52,6 +64,7 @@ impl Evaluator {
     pub(crate) fn border(&self) -> usize {
         match self {
             Self::Product(product) => product.border(),
+            Self::Cause(_) => 0,
         }
     }
 
@@ -64,6 +77,7 @@ impl Evaluator {
     ) -> Vec<RowGains> {
         match self {
             Self::Product(product) => product.gains(arch, belief, rows),
+            Self::Cause(cause) => cause.gains(arch, belief, rows),
         }
     }
 
@@ -71,6 +85,7 @@ impl Evaluator {
     pub(crate) fn has_bound(&self) -> bool {
         match self {
             Self::Product(product) => product.has_bound(),
+            Self::Cause(_) => false,
         }
     }
 
@@ -85,6 +100,7 @@ impl Evaluator {
     ) -> Lanes {
         let bound = match self {
             Self::Product(product) => product.bound(beam, here, likelihood),
+            Self::Cause(_) => None,
         };
         bound.unwrap_or([f32::INFINITY; LANES])
     }

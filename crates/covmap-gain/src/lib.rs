@@ -35,12 +35,16 @@ mod numbers;
 mod sight;
 mod view_points;
 
+mod probes;
 mod product;
 
 mod evaluator;
 mod outcomes;
 
 mod cache;
+mod cause;
+
+mod evidence;
 mod memory;
 
 pub use cache::{GAIN_TOLERANCE, GainCache, Upkeep};

@@ -2,9 +2,10 @@
 //!
 //! This file is the equations as printed, in f64: the oracle. [`crate::product`] holds what runs.
 
-use crate::{BeamStencil, RangeLikelihood, RangePrediction, Stencil, range_likelihood, reflection};
+use crate::{BeamStencil, RangeLikelihood, RangePrediction, Stencil, StencilCell};
+use crate::{range_likelihood, reflection};
 use covmap::{Cell, CoverageMap, Histogram, product};
-use covmap_model::{Outcome, SensorModel};
+use covmap_model::{CauseParameters, Causes, Clues, Outcome, SensorModel};
 
 /// The expected information gain of a view-point, Eq. (14), averaged over the beams \[nats\]:
 ///
@@ -44,40 +45,68 @@ fn beam_gain(
     for k in 0..stencil.outcomes() {
         let p = likelihood.probability(k);
         if p > 0.0 {
-            let gain = |i: usize| {
-                information_gain(
-                    map,
-                    model,
-                    cell(i),
-                    beam.cells[i].cell_distance,
-                    stencil.outcome(k),
-                )
-            };
+            let imagined = Imagined::new(map, model, beam, view_point, stencil.outcome(k));
+            let gain = |i: usize| imagined.information_gain(map, cell(i), &beam.cells[i]);
             expected += p * (0..beam.reach(k)).map(gain).sum::<f64>();
         }
     }
     expected
 }
 
-/// The information gain of one outcome in one cell, Eq. (13): `I(h | d) = H(h) − H(h'_d)`.
-/// Nothing is gained outside the map and in cells that nothing can change.
-fn information_gain(
-    map: &CoverageMap,
-    model: &SensorModel,
-    cell: Cell,
-    cell_distance: f64,
+/// A reading that is imagined: what it would mean, and, with the update by cause, who would have
+/// caused it.
+struct Imagined<'a> {
+    model: &'a SensorModel,
     outcome: Outcome,
-) -> f64 {
-    if map.grid().index(cell).is_none() || map.is_pinned(cell) {
-        return 0.0;
+    causes: Option<(&'a CauseParameters, Causes)>,
+}
+
+impl<'a> Imagined<'a> {
+    fn new(
+        map: &CoverageMap,
+        model: &'a SensorModel,
+        beam: &BeamStencil,
+        view_point: Cell,
+        outcome: Outcome,
+    ) -> Self {
+        let causes = model.parameters().update.cause().map(|parameters| {
+            let (end, reach) = match outcome {
+                Outcome::Echo(d) => (d, f64::INFINITY),
+                _ => (f64::INFINITY, model.reach(outcome) + 1e-9),
+            };
+            let mut clues = Clues::new(parameters, model.resolution(), end);
+            for met in beam.cells.iter().take_while(|c| c.cell_distance <= reach) {
+                let cell = view_point.offset(met.dx, met.dy);
+                if map.grid().index(cell).is_some() {
+                    clues.add(met.met(), map.is_known(cell).then(|| map.mean(cell)));
+                }
+            }
+            (parameters, clues.of(outcome))
+        });
+        Self { model, outcome, causes }
     }
-    let bins = map.bins();
-    let (mut prior, mut evidence, mut posterior) =
-        (vec![0.0; bins], vec![0.0; bins], vec![0.0; bins]);
-    map.read_posterior(cell, &mut prior);
-    model.evidence(cell_distance, outcome, &mut evidence);
-    product(&prior, &evidence, &mut posterior);
-    // The entropy that the map keeps is rounded: too coarse where a reading says little.
-    let entropy = |weights: &[f64]| Histogram::from_weights(weights).map_or(0.0, |h| h.entropy());
-    entropy(&prior) - entropy(&posterior)
+
+    /// The information gain in one cell, Eq. (13): `I(h | d) = H(h) − H(h'_d)`. Nothing is gained
+    /// outside the map and in cells that nothing can change.
+    fn information_gain(&self, map: &CoverageMap, cell: Cell, met: &StencilCell) -> f64 {
+        if map.grid().index(cell).is_none() || map.is_pinned(cell) {
+            return 0.0;
+        }
+        let bins = map.bins();
+        let (mut prior, mut evidence, mut posterior) =
+            (vec![0.0; bins], vec![0.0; bins], vec![0.0; bins]);
+        map.read_posterior(cell, &mut prior);
+        match &self.causes {
+            None => self.model.evidence(met.cell_distance, self.outcome, &mut evidence),
+            Some((parameters, causes)) => {
+                let r = self.model.resolution();
+                causes.evidence(parameters, r, met.met(), self.outcome, &mut evidence);
+            }
+        }
+        product(&prior, &evidence, &mut posterior);
+        // The entropy that the map keeps is rounded: too coarse where a reading says little.
+        let entropy =
+            |weights: &[f64]| Histogram::from_weights(weights).map_or(0.0, |h| h.entropy());
+        entropy(&prior) - entropy(&posterior)
+    }
 }

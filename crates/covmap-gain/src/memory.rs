@@ -1,6 +1,7 @@
 //! How much memory a cache will take, before it takes any.
 
 use crate::Upkeep;
+use crate::belief::PAD;
 use crate::numbers::as_f64;
 use covmap::Grid;
 use covmap::lanes::LANES;
@@ -51,6 +52,11 @@ impl Size {
     /// How many groups of neighbouring view-points, or blocks of cells.
     pub(crate) fn blocks(&self) -> f64 {
         (self.width / as_f64(LANES)).ceil() * self.height
+    }
+
+    /// How many cells rows with a padding have.
+    pub(crate) fn padded(&self) -> f64 {
+        (self.width + as_f64(LANES) + 2.0 * as_f64(PAD)) * self.height
     }
 
     /// How many cells a raster with a border has.

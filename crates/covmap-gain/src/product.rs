@@ -1,7 +1,7 @@
 //! The fast evaluation of E\[I\] for the update by the product, Eq. (9).
 //!
 //! An *imagined reading* is an outcome d, seen from a distance d^l: what it tells of a cell is
-//! p(c | d), the [`evidence`](tables::evidence), and what the cell gains by it depends on nothing
+//! p(c | d), the [`evidence`](crate::evidence), and what the cell gains by it depends on nothing
 //! else but the cell's histogram. So cells are taken ring by ring of distance ([`sweep`]): within a
 //! ring all view-points and all beams imagine the same readings. And readings that are alike gain
 //! alike, so that few are evaluated ([`tables`]): each is interpolated between a few nodes of range

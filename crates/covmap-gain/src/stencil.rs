@@ -2,7 +2,7 @@
 //! heading is fixed, so they are the same everywhere.
 
 use covmap::{Cell, Grid};
-use covmap_model::{Outcome, SensorModel};
+use covmap_model::{Met, Outcome, SensorModel};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::ops::Range;
 
@@ -15,6 +15,15 @@ pub struct StencilCell {
     pub dy: i32,
     /// d^l, distance from the sensor \[m\].
     pub cell_distance: f64,
+    /// Where it lies across the beam: 0 at the right border, 1 at the left.
+    pub across: f64,
+}
+
+impl StencilCell {
+    /// The cell as its beam meets it.
+    pub fn met(&self) -> Met {
+        Met { cell_distance: self.cell_distance, across: self.across }
+    }
 }
 
 /// One beam's cells in order of their distance from the sensor, so that the cells C(l, d)
@@ -112,7 +121,7 @@ fn beams_around(model: &SensorModel, heading: f64, ranges: &[f64]) -> Vec<BeamSt
         model.footprint().for_each_cell(&grid, &pose, beam, model.max_reach(), |c| {
             let Cell { x, y } = c.cell;
             let cell_distance = (c.cell_distance / DISTANCE_STEP).round() * DISTANCE_STEP;
-            cells.push(StencilCell { dx: x - half, dy: y - half, cell_distance });
+            cells.push(StencilCell { dx: x - half, dy: y - half, cell_distance, across: c.across });
         });
         beam_stencil(model, cells, ranges)
     };

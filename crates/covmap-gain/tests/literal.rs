@@ -8,7 +8,8 @@ use covmap_gain::{
     expected_information_gain,
 };
 use covmap_model::{
-    FootprintRule, Linear, ModelParameters, SensorModel, integrate, integrate_body,
+    CauseParameters, FootprintRule, FreeSpace, Linear, ModelParameters, NoEchoShare, SensorModel,
+    Update, integrate, integrate_body,
 };
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
@@ -80,6 +81,40 @@ fn some_scans() -> impl Strategy<Value = Vec<(f64, f64, Vec<Range>)>> {
     ];
     let ranges = prop::collection::vec(range, 24);
     prop::collection::vec((-1.0..1.0f64, -0.7..0.7f64, ranges), 1..4)
+}
+
+/// Models of the update by cause that differ in all that the fast evaluation makes use of.
+fn some_causes() -> impl Strategy<Value = ModelParameters> {
+    let free = (0.05..=1.0f64, 0.3..3.0f64, 0.3..9.0f64, 0.5..0.9f64);
+    let answers = (1..=16usize, 0.3..2.0f64, 0.3..6.0f64, 0.0..6.0f64);
+    let end = (0.005..0.08f64, 0.5..1.5f64, 0.0..0.1f64);
+    let behind = (0.1..0.3f64, 0.05..=1.0f64, 0.6..2.0f64);
+    let rest = (0.0..=1.0f64, 0.0..=1.0f64, prop_oneof![Just(0.0), 0.1..1.5f64], any::<bool>());
+    let bins = prop::sample::select(vec![6, 11, 16]);
+    (bins, free, answers, end, behind, rest).prop_map(|(bins, free, answers, end, behind, rest)| {
+        #[allow(clippy::cast_precision_loss, reason = "few bins")]
+        let bin = 1.0 / (bins - 1) as f64;
+        let cause = CauseParameters {
+            bearings: answers.0,
+            range_tolerance: end.0,
+            cell_depth: end.1.max(0.8),
+            unknown_coverage: rest.0,
+            sharpness: answers.1,
+            chance: answers.2,
+            first_echo: answers.3,
+            sigma_in: Linear { base: end.1 * bin, per_cell_distance: end.2, per_range: end.2 },
+            behind: behind.0,
+            behind_weight: behind.1,
+            sigma_behind: behind.2 * bin,
+            free: FreeSpace { share: free.0, range: free.1, width: free.2, sigma: free.3 * bin },
+            beyond: 0.3,
+            no_echo: NoEchoShare { range: rest.2, share: rest.1 },
+        };
+        let half_angle = 0.13;
+        let cones = FootprintRule::Cones { half_angle };
+        let footprint = if rest.3 { cones } else { FootprintRule::Sectors { half_angle } };
+        ModelParameters { bins, usable_range: 1.5, footprint, update: Update::Cause(cause) }
+    })
 }
 
 /// Models that differ in all that the fast evaluation makes use of.
@@ -165,6 +200,27 @@ proptest! {
     ) {
         // With an offset of half a cell there are cells exactly where two rings meet.
         check(Setting::new(&model, &ring(offset), PLAIN), scans)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn the_cached_gain_is_the_literal_one_for_all_causes_and_rings(
+        model in some_causes(), scans in some_scans(),
+        offset in prop::sample::select(vec![0.0, 0.05, 0.1, 0.2]),
+        share in prop_oneof![3 => Just(0.0), 1 => 0.0..0.2f64],
+        unknown in prop_oneof![Just(0.0), 0.0..0.5f64]
+    ) {
+        let prediction = RangePrediction { unknown_reflection: unknown, uniform_share: share };
+        check(Setting::new(&model, &ring(offset), prediction), scans)?;
+    }
+
+    #[test]
+    fn the_cached_gain_is_the_literal_one_by_cause_by_default(scans in some_scans()) {
+        let model = ModelParameters { usable_range: 1.5, ..ModelParameters::by_cause() };
+        check(Setting::new(&model, &SonarRing::b21r(), PLAIN), scans)?;
     }
 }
 

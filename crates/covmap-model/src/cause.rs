@@ -64,23 +64,33 @@ pub struct Causes {
     pub any: f64,
 }
 
-/// What a reading says of one cell: shares, and where the coverage is if they are right.
+/// What an outcome can say of a cell, whatever caused it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Role {
+    /// How much of the cause in its bearing counts for N(μ, σ): 1 at the end, b behind it, else 0.
+    pub weight: f64,
+    /// μ.
+    pub mu: f64,
+    /// σ.
+    pub sigma: f64,
+    /// f(d^l, θ), how much counts for N(0, σ_free) of what any other surface caused; 0 behind.
+    pub free: f64,
+}
+
+/// What a reading says of one cell: the shares of N(μ, σ) and of N(0, σ_free).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shares {
-    /// The share of N(μ, σ).
     pub(crate) ended: f64,
-    /// μ, σ
-    pub(crate) mu: f64,
-    pub(crate) sigma: f64,
-    /// The share of N(0, σ_free).
     pub(crate) passed: f64,
 }
 
-/// How the cells that a beam meets bear on an echo.
-pub(crate) struct Clues<'a> {
+/// How the cells that a beam meets bear on its reading: told of each of them once, in any order,
+/// it finds the [`Causes`].
+#[derive(Debug, Clone)]
+pub struct Clues<'a> {
     parameters: &'a CauseParameters,
-    /// r/2 \[m\]
-    half: f64,
+    /// r \[m\]
+    resolution: f64,
     /// z, or up to where a beam without a cause passed \[m\].
     end: f64,
     /// v_m
@@ -99,21 +109,18 @@ impl Shares {
 
 impl<'a> Clues<'a> {
     /// No cell yet; `end` is z, or up to where the beam passed if nothing answered \[m\].
-    pub(crate) fn new(parameters: &'a CauseParameters, resolution: f64, end: f64) -> Self {
+    pub fn new(parameters: &'a CauseParameters, resolution: f64, end: f64) -> Self {
         let (clear, surface) = ([1.0; MOST_BEARINGS], [0.0; MOST_BEARINGS]);
-        Self { parameters, half: 0.5 * resolution, end, clear, surface }
+        Self { parameters, resolution, end, clear, surface }
     }
 
     /// Adds a cell with its expected coverage before the scan, `None` if no reading touched it.
     #[inline(always)]
-    pub(crate) fn add(&mut self, met: Met, expected: Option<f64>) {
+    pub fn add(&mut self, met: Met, expected: Option<f64>) {
         let p = self.parameters;
         let delta = met.cell_distance - self.end;
-        let border = delta.abs() - self.half;
-        let bearing = p.bearing(met.across);
-        if border <= p.range_tolerance {
-            let z = border.max(0.0) / (0.5 * p.range_tolerance);
-            let near = if z > 0.0 { libm::exp(-0.5 * z * z) } else { 1.0 };
+        let (near, bearing) = (p.nearness(self.resolution, delta), p.bearing(met.across));
+        if near > 0.0 {
             let surface = near * expected.unwrap_or(p.unknown_coverage);
             self.surface[bearing] = self.surface[bearing].max(surface);
         } else if let Some(expected) = expected.filter(|_| delta < 0.0) {
@@ -130,7 +137,7 @@ impl<'a> Clues<'a> {
     }
 
     /// The causes of an echo.
-    pub(crate) fn of_echo(&self) -> Causes {
+    fn of_echo(&self) -> Causes {
         let (p, first) = (self.parameters, self.first());
         let mut ended = [0.0; MOST_BEARINGS];
         let views = self.clear.iter().zip(&self.surface).take(p.bearings);
@@ -144,9 +151,15 @@ impl<'a> Clues<'a> {
         Causes { ended, any: sum / (sum + p.chance) }
     }
 
-    /// What is known of a beam that no surface in range answered, with its own `share`.
-    pub(crate) fn of_passing(&self, share: f64) -> Causes {
-        Causes { ended: [0.0; MOST_BEARINGS], any: share * self.first() }
+    /// The causes of an outcome: of an echo, or of a beam that no surface in range answered.
+    pub fn of(&self, outcome: Outcome) -> Causes {
+        let p = self.parameters;
+        let passed = |share| Causes { ended: [0.0; MOST_BEARINGS], any: share * self.first() };
+        match outcome {
+            Outcome::Echo(_) => self.of_echo(),
+            Outcome::Beyond(_) => passed(p.beyond),
+            Outcome::NoEcho => passed(p.no_echo.share),
+        }
     }
 }
 
@@ -170,12 +183,15 @@ impl CauseParameters {
         bearing.min(self.bearings - 1)
     }
 
-    /// β or ν: how surely a beam without a cause passed the cells before its end.
-    pub(crate) fn passing(&self, outcome: Outcome) -> f64 {
-        match outcome {
-            Outcome::Echo(_) => 0.0,
-            Outcome::Beyond(_) => self.beyond,
-            Outcome::NoEcho => self.no_echo.share,
+    /// w(δ): how likely an echo from z comes from a cell, by δ = d^l − z \[m\].
+    #[inline(always)]
+    pub fn nearness(&self, resolution: f64, delta: f64) -> f64 {
+        let border = delta.abs() - 0.5 * resolution;
+        let z = border / (0.5 * self.range_tolerance);
+        match border {
+            border if border <= 0.0 => 1.0,
+            border if border <= self.range_tolerance => libm::exp(-0.5 * z * z),
+            _ => 0.0,
         }
     }
 
@@ -191,34 +207,38 @@ impl CauseParameters {
         if f < LEAST_PASSED { 0.0 } else { f }
     }
 
-    /// What a reading with some causes says of a cell.
-    pub(crate) fn shares(
-        &self,
-        resolution: f64,
-        met: Met,
-        outcome: Outcome,
-        causes: &Causes,
-    ) -> Shares {
-        let (half, passed) = (0.5 * resolution, self.passed(met));
-        let Outcome::Echo(end) = outcome else {
-            return Shares { ended: 0.0, mu: 0.0, sigma: 1.0, passed: passed * causes.any };
-        };
+    /// What an outcome can say of a cell.
+    pub fn role(&self, resolution: f64, met: Met, outcome: Outcome) -> Role {
+        let passed = Role { weight: 0.0, mu: 0.0, sigma: 1.0, free: self.passed(met) };
+        let Outcome::Echo(end) = outcome else { return passed };
         let delta = met.cell_distance - end;
-        let ended = if delta.abs() - half <= self.range_tolerance || delta > half {
-            causes.ended[self.bearing(met.across)]
-        } else {
-            0.0
-        };
-        if delta > half {
-            let ended = self.behind_weight * ended;
-            return Shares { ended, mu: 1.0, sigma: self.sigma_behind, passed: 0.0 };
+        if delta > 0.5 * resolution {
+            return Role {
+                weight: self.behind_weight,
+                mu: 1.0,
+                sigma: self.sigma_behind,
+                free: 0.0,
+            };
         }
-        Shares {
-            ended,
-            mu: (0.5 + delta / (self.cell_depth * resolution)).clamp(0.0, 1.0),
-            sigma: self.sigma_in.at(met.cell_distance, end),
-            passed: if delta < 0.0 { passed * (causes.any - ended) } else { 0.0 },
+        let mu = (0.5 + delta / (self.cell_depth * resolution)).clamp(0.0, 1.0);
+        match self.nearness(resolution, delta) {
+            near if near > 0.0 => Role {
+                weight: 1.0,
+                mu,
+                sigma: self.sigma_in.at(met.cell_distance, end),
+                free: if delta < 0.0 { passed.free } else { 0.0 },
+            },
+            _ => passed,
         }
+    }
+}
+
+impl Role {
+    /// The shares that causes give a cell of a bearing.
+    #[inline(always)]
+    pub(crate) fn shares(&self, causes: &Causes, bearing: usize) -> Shares {
+        let own = if self.weight > 0.0 { causes.ended[bearing] } else { 0.0 };
+        Shares { ended: self.weight * own, passed: self.free * (causes.any - own) }
     }
 }
 
@@ -253,9 +273,10 @@ impl Causes {
         outcome: Outcome,
         out: &mut [f64],
     ) -> bool {
-        let shares = parameters.shares(resolution, met, outcome, self);
+        let role = parameters.role(resolution, met, outcome);
+        let shares = role.shares(self, parameters.bearing(met.across));
         let mut ended = vec![0.0; out.len()];
-        gaussian(shares.mu, shares.sigma, &mut ended);
+        gaussian(role.mu, role.sigma, &mut ended);
         gaussian(0.0, parameters.free.sigma, out);
         #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let even = (1.0 - shares.ended - shares.passed) / out.len() as f64;
@@ -267,7 +288,7 @@ impl Causes {
 }
 
 /// N(μ, σ, x) at the coverage x of every bin, normalised over the bins.
-pub(crate) fn gaussian(mu: f64, sigma: f64, out: &mut [f64]) {
+pub fn gaussian(mu: f64, sigma: f64, out: &mut [f64]) {
     let bins = out.len();
     for (bin, o) in out.iter_mut().enumerate() {
         let z = (bin_coverage(bin, bins) - mu) / sigma;

@@ -37,7 +37,7 @@ mod scan_counts;
 mod sensor_model;
 
 pub use body::Body;
-pub use cause::{Causes, Met, opaque};
+pub use cause::{Causes, Clues, Met, Role, gaussian, opaque};
 pub use footprint::{Footprint, FootprintCell, FootprintError, FootprintRule};
 pub use integrate::{
     cells_under_body, integrate, integrate_body, integrate_literally, intercepted,

@@ -140,7 +140,7 @@ impl SensorModel {
             Update::Cause(cause) => {
                 let causes = match outcome {
                     Outcome::Echo(_) => Causes::in_an_unknown_map(cause),
-                    _ => Clues::new(cause, self.resolution, 0.0).of_passing(cause.passing(outcome)),
+                    _ => Clues::new(cause, self.resolution, 0.0).of(outcome),
                 };
                 let met = Met { cell_distance, across: 0.5 };
                 causes.evidence(cause, self.resolution, met, outcome, out);

@@ -19,11 +19,11 @@
 mod families;
 
 use super::sweep::add_product;
-use super::tables::probes::ProbeHistograms;
 use crate::Stencil;
 use crate::belief::Belief;
 use crate::memory::Size;
 use crate::numbers::as_f64;
+use crate::probes::ProbeHistograms;
 use crate::sight::{GroupLikelihood, Lanes64, RasterBeam, at_offset};
 use crate::view_points::groups_per_row;
 use covmap::Grid;

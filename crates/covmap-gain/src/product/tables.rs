@@ -16,9 +16,6 @@
 //! What is interpolated needs some readings at nodes; the readings at the nodes of all rings are
 //! mixtures of a few that are kept for every cell ([`basis`]).
 
-pub(super) mod evidence;
-pub(super) mod probes;
-
 pub(super) mod interpolation;
 pub(super) mod spanning;
 

@@ -39,8 +39,5 @@ fn explain_beam(
         let expected = map.is_known(covered.cell).then(|| map.mean(covered.cell));
         clues.add(Met { cell_distance: covered.cell_distance, across: covered.across }, expected);
     });
-    match outcome {
-        Outcome::Echo(_) => clues.of_echo(),
-        _ => clues.of_passing(parameters.passing(outcome)),
-    }
+    clues.of(outcome)
 }

@@ -1,7 +1,7 @@
 //! The update by cause as it runs: many cells side by side, in f32.
 
 use crate::CauseParameters;
-use crate::cause::{Shares, gaussian};
+use crate::cause::{Role, Shares, gaussian};
 use covmap::bin_coverage;
 use covmap::lanes::{LANES, Lanes, TOGETHER, exp, flat, map, rows};
 
@@ -28,10 +28,10 @@ impl CauseTerms {
 
     /// Adds a cell.
     #[inline(always)]
-    pub(crate) fn push(&mut self, shares: &Shares) {
+    pub(crate) fn push(&mut self, role: &Role, shares: &Shares) {
         self.ended.push(single(shares.ended));
-        self.mu.push(single(shares.mu));
-        self.sigma.push(single(shares.sigma));
+        self.mu.push(single(role.mu));
+        self.sigma.push(single(role.sigma));
         self.passed.push(single(shares.passed));
     }
 

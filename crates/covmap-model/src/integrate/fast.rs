@@ -104,10 +104,11 @@ impl<'a> Integration<'a> {
                 for (beam, explained) in explained.iter().enumerate() {
                     let Some((outcome, causes)) = explained else { continue };
                     self.for_each_met(beam, *outcome, |this, covered, met| {
-                        let shares = parameters.shares(resolution, met, *outcome, causes);
+                        let role = parameters.role(resolution, met, *outcome);
+                        let shares = role.shares(causes, parameters.bearing(met.across));
                         if !shares.are_nothing() && this.add(covered, met) {
                             terms.fill(this.cells.len() - 1);
-                            terms.push(&shares);
+                            terms.push(&role, &shares);
                         }
                     });
                 }
@@ -133,6 +134,7 @@ impl<'a> Integration<'a> {
             visit(self, cell, Met { cell_distance, across });
         });
     }
+
     /// Adds a cell to the present block, or to the next one if it is in this one already, from
     /// another beam. Returns whether it did: not one that nothing can change.
     #[inline(always)]

@@ -5,9 +5,9 @@
 //! and behind it for each band of the end; and one of no echo.
 
 use crate::belief::BlockPrior;
+use crate::evidence::{Evidence, ExcessEvidence};
 use crate::numbers::to_f32;
-use crate::product::tables::evidence::{Evidence, ExcessEvidence};
-use crate::product::tables::probes::ProbeHistograms;
+use crate::probes::ProbeHistograms;
 use covmap::lanes::{LANES, Lanes};
 use covmap_model::{Outcome, SensorModel};
 

@@ -6,11 +6,11 @@
 //! in front, 9 behind, and one. These are evaluated when a cell changes, and kept; a mixture of them
 //! takes a fifth of the time that an evaluation does.
 
-use super::evidence::{Evidence, ExcessEvidence};
-use super::probes::ProbeHistograms;
 use super::spanning::SpanningSet;
 use crate::belief::{Belief, BlockPrior};
+use crate::evidence::{Evidence, ExcessEvidence};
 use crate::numbers::to_f32;
+use crate::probes::ProbeHistograms;
 use covmap::lanes::{LANES, Lanes};
 use pulp::Arch;
 use rayon::prelude::*;

@@ -5,9 +5,9 @@
 //! it is interpolated by polynomials. How few nodes are enough is measured on
 //! [`ProbeHistograms`] when the tables are made.
 
-use super::evidence::Evidence;
-use super::probes::ProbeHistograms;
+use crate::evidence::Evidence;
 use crate::numbers::as_f64;
+use crate::probes::ProbeHistograms;
 use std::f64::consts::PI;
 
 /// Where a function is evaluated, and what each value weighs at each of the points asked for.

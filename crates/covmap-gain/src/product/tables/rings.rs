@@ -6,10 +6,10 @@
 
 use super::basis::{Basis, MixtureQueue, ReadingGain};
 use super::beyond::{BeyondOutcomes, Lattice};
-use super::evidence::Evidence;
 use super::interpolation::Nodes;
-use super::probes::ProbeHistograms;
+use crate::evidence::Evidence;
 use crate::numbers::{as_f64, to_f32};
+use crate::probes::ProbeHistograms;
 use crate::{BeamStencil, Stencil};
 use covmap_model::{Linear, Outcome, SensorModel};
 use std::collections::BTreeSet;

@@ -16,7 +16,7 @@ use crate::numbers::to_f32;
 use covmap::lanes::{LANES, Lanes, ln};
 use covmap_model::{Outcome, SensorModel};
 
-/// p(c | d) of Eq. (9) for cells at one distance, in f64: what tables are made from.
+/// p(c | d) of one cell, in f64: what tables are made from.
 #[derive(Debug, Clone)]
 pub(crate) struct Evidence {
     /// t = p(c | d).
@@ -38,6 +38,11 @@ impl Evidence {
     pub(crate) fn new(model: &SensorModel, cell_distance: f64, outcome: Outcome) -> Self {
         let mut t = vec![0.0; model.parameters().bins];
         model.evidence(cell_distance, outcome, &mut t);
+        Self::of(t)
+    }
+
+    /// The evidence whose weights at the bins these are.
+    pub(crate) fn of(t: Vec<f64>) -> Self {
         let v = t.iter().map(|t| t * libm::log(*t)).collect();
         Self { t, v }
     }
@@ -71,8 +76,8 @@ impl ExcessEvidence {
     #[inline(always)]
     pub(crate) fn gain(&self, prior: &BlockPrior<'_>) -> Lanes {
         let (mut above, mut sum) = ([0.0f32; LANES], [0.0f32; LANES]);
-        let bins = prior.h[self.first..].iter().zip(&prior.h_hat[self.first..]);
-        for ((h, h_hat), (e, w)) in bins.zip(&self.terms) {
+        for (bin, (e, w)) in (self.first..).zip(&self.terms) {
+            let (h, h_hat) = (prior.h(bin), prior.h_hat(bin));
             for lane in 0..LANES {
                 above[lane] += h[lane] * e;
                 sum[lane] += h_hat[lane] * e + h[lane] * w;

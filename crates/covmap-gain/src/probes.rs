@@ -4,7 +4,7 @@
 //! and paired peaks of many places and widths on floors of many heights, which is what few and many
 //! readings leave.
 
-use super::evidence::Evidence;
+use crate::evidence::Evidence;
 use covmap::bin_coverage;
 use covmap_model::{Outcome, SensorModel};
 
@@ -48,7 +48,7 @@ impl ProbeHistograms {
 
     /// The uniform one, and narrow and wide ones around many coverages, alone and in pairs.
     /// `strongest` is the evidence that tells most.
-    fn new(strongest: &Evidence) -> Self {
+    pub(crate) fn new(strongest: &Evidence) -> Self {
         let bins = strongest.bins();
         let mut probes = vec![vec![1.0; bins]];
         for center in [0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0] {

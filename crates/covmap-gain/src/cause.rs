@@ -1,0 +1,253 @@
+//! The fast evaluation of E\[I\] for the update by cause.
+//!
+//! What an imagined echo says of a cell depends on the cell's histogram and on two shares: g of
+//! "passed" and s of "ended", which follow from the causes, [`covmap_model::Causes`]. So E\[I\] of a
+//! beam is a sum of three kinds, over the outcomes k with their p(d_k | c), causes c_m(k), and L(k):
+//!
+//! ```text
+//! in front   Σ_k p_k · Σ_i G_i(f_i · L(k))             over the cells i before the end
+//! at the end Σ_k p_k · Σ_i I(h_i | s = c_m(k), g)      over the few cells in which it may lie
+//! behind     Σ_k p_k · Σ_i B_i(b · c_m(k))             over those just behind
+//! ```
+//!
+//! G_i and B_i are functions of one number each, which are kept for every cell as polynomials
+//! ([`polynomials`]). With G_i(x) = Σ_q C_iq · x^q the sum over the outcomes comes first,
+//!
+//! ```text
+//! Σ_k p_k · G_i(f_i · L(k)) = Σ_q C_iq · f_i^q · S_q(i)     S_q(i) = Σ_k p_k · L(k)^q
+//! ```
+//!
+//! with k over the outcomes that end beyond i: going inwards from the farthest cell, an outcome is
+//! added to the S_q once, and a cell costs as much as one reading. The cells at the end are
+//! evaluated as they are ([`ends`]).
+
+mod beam;
+mod causes;
+mod ends;
+mod polynomials;
+
+use crate::belief::{Belief, NOT_KNOWN, lanes_at};
+use crate::memory::Size;
+use crate::numbers::to_f32;
+use crate::outcomes::{AskedRow, GroupBeam, RowGains};
+use crate::view_points::groups_per_row;
+use crate::{Stencil, evidence::Evidence};
+use beam::CauseBeam;
+use causes::GroupCauses;
+use covmap::Grid;
+use covmap::lanes::{LANES, Lanes};
+use covmap_model::{CauseParameters, ModelParameters, SensorModel, gaussian, opaque};
+use ends::AtEnd;
+use polynomials::Polynomials;
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+
+/// So many rows of view-points are worked at by one thread at least.
+const ROWS_PER_THREAD: usize = 1;
+
+/// Evaluates E\[I\] of many beams.
+#[derive(Debug, Clone)]
+pub(crate) struct Cause {
+    parameters: CauseParameters,
+    grid: Grid,
+    beams: Vec<CauseBeam>,
+    at_end: AtEnd,
+    /// G of every cell, over g.
+    front: Polynomials,
+    /// B of every cell, over s.
+    behind: Polynomials,
+    /// Bordered: E\[c\]^p.
+    surface: Vec<f32>,
+    /// Bordered: 1 − o.
+    clear: Vec<f32>,
+}
+
+impl Cause {
+    pub(crate) fn new(
+        model: &SensorModel,
+        parameters: &CauseParameters,
+        stencil: &Stencil,
+        grid: Grid,
+        belief: &Belief,
+    ) -> Self {
+        let ModelParameters { bins, .. } = *model.parameters();
+        let (p, r) = (parameters, model.resolution());
+        let beam = |beam| CauseBeam::new((p, r, bins), beam, stencil, belief.raster_width());
+        let evidence = |mu, sigma| {
+            move |share: f64| {
+                let mut t = vec![0.0; bins];
+                gaussian(mu, sigma, &mut t);
+                #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
+                let even = (1.0 - share) / bins as f64;
+                t.iter_mut().for_each(|t| *t = even + share * *t);
+                Evidence::of(t)
+            }
+        };
+        #[allow(clippy::cast_precision_loss, reason = "at most 16 bearings")]
+        let all = p.bearings as f64;
+        let most_passed = p.free.share * p.no_echo.share.max(all / (all + p.chance));
+        let most_behind = p.behind_weight / (1.0 + p.chance);
+        let cells = belief.expected().len();
+        Self {
+            parameters: p.clone(),
+            grid,
+            beams: stencil.beams.iter().map(beam).collect(),
+            at_end: AtEnd::new(p, bins),
+            front: Polynomials::new(grid, most_passed, evidence(0.0, p.free.sigma)),
+            behind: Polynomials::new(grid, most_behind, evidence(1.0, p.sigma_behind)),
+            surface: vec![0.0; cells],
+            clear: vec![1.0; cells],
+        }
+    }
+
+    /// About how many bytes this takes.
+    pub(crate) fn bytes(size: &Size) -> f64 {
+        // A cell of the stencil, and its kernels for the outcomes that end nearby.
+        let stencil = size.stencil * (40.0 + 4.0 * (4.0 * size.bins + 16.0));
+        let ends = size.beams * size.ranges * 40.0;
+        2.0 * Polynomials::bytes(size) + 8.0 * size.bordered() + stencil + ends
+    }
+
+    /// Takes over blocks of cells that changed, given in ascending order.
+    pub(crate) fn update(&mut self, arch: Arch, belief: &Belief, changed: &[usize]) {
+        self.front.update(arch, belief, changed);
+        self.behind.update(arch, belief, changed);
+        let p = &self.parameters;
+        let (width, per_row) = (self.grid.width(), groups_per_row(&self.grid));
+        let unknown = to_f32(libm::pow(p.unknown_coverage, p.sharpness));
+        for block in changed {
+            let (y, x) = (block / per_row, block % per_row * LANES);
+            let first = belief.bordered(y * width + x);
+            for at in first..first + LANES.min(width - x) {
+                let expected = belief.expected()[at];
+                (self.surface[at], self.clear[at]) = if expected.to_bits() == NOT_KNOWN.to_bits() {
+                    (unknown, 1.0)
+                } else {
+                    let expected = f64::from(expected);
+                    let surface = libm::pow(expected, p.sharpness);
+                    (to_f32(surface), to_f32(1.0 - opaque(expected)))
+                };
+            }
+        }
+    }
+
+    /// The gains of all beams of some rows.
+    pub(crate) fn gains(&self, arch: Arch, belief: &Belief, rows: &[AskedRow]) -> Vec<RowGains> {
+        let rows = rows.par_iter().with_min_len(ROWS_PER_THREAD);
+        rows.map(|row| arch.dispatch(GainsOfRow { cause: self, belief, row })).collect()
+    }
+}
+
+/// The gains of one row.
+struct GainsOfRow<'a> {
+    cause: &'a Cause,
+    belief: &'a Belief,
+    row: &'a AskedRow,
+}
+
+impl WithSimd for GainsOfRow<'_> {
+    type Output = RowGains;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> RowGains {
+        let mut fronts = Vec::new();
+        self.row.beams.iter().map(|asked| self.gain(asked, &mut fronts)).collect()
+    }
+}
+
+/// The cells before the end of an outcome: how many, p_k, and L(k).
+struct Front {
+    cells: usize,
+    probability: Lanes,
+    any: Lanes,
+}
+
+impl GainsOfRow<'_> {
+    #[inline(always)]
+    fn gain(&self, asked: &GroupBeam, fronts: &mut Vec<Front>) -> [f64; LANES] {
+        let (cause, belief) = (self.cause, self.belief);
+        let beam = &cause.beams[asked.beam];
+        let x = asked.group * LANES;
+        let here = belief.bordered(self.row.y * cause.grid.width()) + x;
+        let mut causes = GroupCauses::new(&cause.parameters);
+        let mut gain = [0.0; LANES];
+        fronts.clear();
+        let outcomes = self.row.outcomes[asked.outcomes.clone()].iter();
+        for (k, probability) in outcomes.zip(&self.row.probabilities[asked.outcomes.clone()]) {
+            let (cells, any) = if let Some(end) = beam.ends.get(*k) {
+                causes.pass(&cause.clear, &beam.cells[..end.front], here);
+                causes.explain(&cause.surface, beam, end, here);
+                self.add_ends(&mut gain, (beam, end), &causes, probability, x);
+                (end.front, causes.any)
+            } else {
+                let mut silent = GroupCauses::new(&cause.parameters);
+                silent.pass(&cause.clear, &beam.cells[..beam.no_echo], here);
+                (beam.no_echo, silent.of_no_echo())
+            };
+            fronts.push(Front { cells, probability: *probability, any });
+        }
+        self.add_front(&mut gain, beam, fronts, x);
+        gain.map(f64::from)
+    }
+
+    /// Adds the gains of the cells at the end and behind it.
+    #[inline(always)]
+    fn add_ends(
+        &self,
+        gain: &mut Lanes,
+        (beam, end): (&CauseBeam, &beam::End),
+        causes: &GroupCauses<'_>,
+        probability: &Lanes,
+        x: usize,
+    ) {
+        let mut sum = [0.0; LANES];
+        for (cell, kernel) in
+            beam.cells[end.front..end.ended].iter().zip(&beam.kernels[end.first..])
+        {
+            let Some((y, x)) = self.place(cell, x) else { continue };
+            let prior = self.belief.prior_at(y, x);
+            self.cause.at_end.add(&mut sum, &prior, kernel, causes.ended(cell), &causes.any);
+        }
+        for cell in &beam.cells[end.ended..end.reach] {
+            let Some((y, x)) = self.place(cell, x) else { continue };
+            self.cause.behind.add(&mut sum, (y, x), causes.ended(cell), beam.behind_weight);
+        }
+        for lane in 0..LANES {
+            gain[lane] += probability[lane] * sum[lane];
+        }
+    }
+
+    /// Adds the gains of the cells in front of the ends of all outcomes, from the farthest inwards.
+    #[inline(always)]
+    fn add_front(&self, gain: &mut Lanes, beam: &CauseBeam, fronts: &mut [Front], x: usize) {
+        fronts.sort_by_key(|front| std::cmp::Reverse(front.cells));
+        let mut sums = self.cause.front.no_sums();
+        for i in 0..fronts.len() {
+            let Front { cells, probability, any } = &fronts[i];
+            sums.add(probability, any);
+            let next = fronts.get(i + 1).map_or(0, |next| next.cells);
+            for cell in beam.cells[next..*cells].iter().filter(|cell| cell.free > 0.0) {
+                let Some(place) = self.place(cell, x) else { continue };
+                self.cause.front.add_sums(gain, place, &sums, cell.free);
+            }
+        }
+    }
+
+    /// Row and column of a cell as the view-point in column `x` sees it; `None` if it is outside of
+    /// the grid for the whole group.
+    #[inline(always)]
+    fn place(&self, cell: &beam::CauseCell, x: usize) -> Option<(usize, isize)> {
+        let grid = &self.cause.grid;
+        let y = self.row.y.wrapping_add_signed(cell.dy);
+        let x = x.cast_signed() + cell.dx;
+        let is_inside =
+            y < grid.height() && x > -LANES.cast_signed() && x < grid.width().cast_signed();
+        is_inside.then_some((y, x))
+    }
+}
+
+/// Numbers of a bordered raster at a cell, from each view-point of a group.
+#[inline(always)]
+fn at<'a>(raster: &'a [f32], here: usize, cell: &beam::CauseCell) -> &'a Lanes {
+    lanes_at(raster, here.wrapping_add_signed(cell.offset))
+}

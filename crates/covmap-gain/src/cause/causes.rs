@@ -1,0 +1,113 @@
+//! [`covmap_model::Causes`] of one beam from a group of view-points, side by side.
+
+use super::at;
+use super::beam::{CauseBeam, CauseCell, End};
+use crate::numbers::{as_f64, to_f32};
+use covmap::lanes::{LANES, Lanes, exp, ln, map};
+use covmap_model::CauseParameters;
+
+/// The most bearings.
+const MOST: usize = 16;
+
+/// Who causes the outcomes of a beam, which are asked for in order of their range.
+pub(super) struct GroupCauses<'a> {
+    parameters: &'a CauseParameters,
+    /// So many cells are passed.
+    passed: usize,
+    /// v_m, and whether any is below 1.
+    clear: [Lanes; MOST],
+    is_hidden: bool,
+    /// c_m.
+    ended: [Lanes; MOST],
+    /// L.
+    pub(super) any: Lanes,
+}
+
+impl<'a> GroupCauses<'a> {
+    #[inline(always)]
+    pub(super) fn new(parameters: &'a CauseParameters) -> Self {
+        let (clear, none) = ([[1.0; LANES]; MOST], [0.0; LANES]);
+        Self { parameters, passed: 0, clear, is_hidden: false, ended: [none; MOST], any: none }
+    }
+
+    /// c_m of the bearing of a cell.
+    #[inline(always)]
+    pub(super) fn ended(&self, cell: &CauseCell) -> &Lanes {
+        &self.ended[cell.bearing]
+    }
+
+    /// Takes the cells up to some of them for passed: the clear view is as they leave it.
+    #[inline(always)]
+    pub(super) fn pass(&mut self, clear: &[f32], cells: &[CauseCell], here: usize) {
+        for cell in cells.get(self.passed..).unwrap_or_default() {
+            let clear = at(clear, here, cell);
+            if clear.iter().any(|clear| *clear < 1.0) {
+                self.is_hidden = true;
+                let view = &mut self.clear[cell.bearing];
+                for lane in 0..LANES {
+                    view[lane] *= clear[lane];
+                }
+            }
+        }
+        self.passed = self.passed.max(cells.len());
+    }
+
+    /// S.
+    #[inline(always)]
+    fn first(&self) -> Lanes {
+        let bearings = self.parameters.bearings;
+        if !self.is_hidden {
+            return [1.0; LANES];
+        }
+        let mut mean = [0.0; LANES];
+        for clear in &self.clear[..bearings] {
+            for lane in 0..LANES {
+                mean[lane] += clear[lane];
+            }
+        }
+        let (each, power) = (to_f32(1.0 / as_f64(bearings)), to_f32(self.parameters.first_echo));
+        let log = ln(&map(&mean, |mean| (mean * each).max(1e-30)));
+        exp(&map(&log, |log| (log * power).max(-80.0)))
+    }
+
+    /// Finds c_m and L of an echo.
+    #[inline(always)]
+    pub(super) fn explain(&mut self, surface: &[f32], beam: &CauseBeam, end: &End, here: usize) {
+        let bearings = self.parameters.bearings;
+        let ended = &mut self.ended[..bearings];
+        ended.fill([0.0; LANES]);
+        let cells = beam.cells[end.front..end.near].iter().zip(&beam.kernels[end.first..]);
+        for (cell, kernel) in cells {
+            let (surface, likeliest) = (at(surface, here, cell), &mut ended[cell.bearing]);
+            for lane in 0..LANES {
+                let surface = kernel.nearness * surface[lane];
+                likeliest[lane] = if surface > likeliest[lane] { surface } else { likeliest[lane] };
+            }
+        }
+        let (first, mut sum) = (self.first(), [0.0; LANES]);
+        let ended = &mut self.ended[..bearings];
+        for (ended, clear) in ended.iter_mut().zip(&self.clear) {
+            for lane in 0..LANES {
+                ended[lane] *= first[lane] * clear[lane];
+                sum[lane] += ended[lane];
+            }
+        }
+        let chance = to_f32(self.parameters.chance);
+        let share = map(&sum, |sum| 1.0 / (sum + chance));
+        for lane in 0..LANES {
+            self.any[lane] = sum[lane] * share[lane];
+        }
+        for ended in ended {
+            for lane in 0..LANES {
+                ended[lane] *= share[lane];
+            }
+        }
+    }
+
+    /// L without an echo.
+    #[inline(always)]
+    pub(super) fn of_no_echo(&self) -> Lanes {
+        let share = to_f32(self.parameters.no_echo.share);
+        self.first().map(|first| share * first)
+    }
+}

@@ -1,0 +1,215 @@
+//! The gain of every cell as a function of one share, as a polynomial.
+//!
+//! For a kernel K the evidence of a cell is (1 − x)·U + x·K, and its gain an analytic function of
+//! the share x that is 0 at x = 0. It is interpolated in Chebyshev's nodes of \[0, x_max\], as many as
+//! the gains of histograms of all kinds need to be met.
+
+use crate::belief::{Belief, PAD, lanes_at, padded};
+use crate::evidence::{Evidence, ExcessEvidence};
+use crate::memory::Size;
+use crate::numbers::{as_f64, to_f32};
+use crate::probes::ProbeHistograms;
+use crate::view_points::groups_per_row;
+use covmap::Grid;
+use covmap::lanes::{LANES, Lanes};
+use pulp::Arch;
+use rayon::prelude::*;
+
+/// The largest degree.
+pub(super) const MOST: usize = 12;
+
+/// An interpolated gain may be off by so much of the largest gain of its histogram.
+const TOLERANCE: f64 = 2e-6;
+
+/// The polynomials of all cells.
+#[derive(Debug, Clone)]
+pub(super) struct Polynomials {
+    grid: Grid,
+    largest: f64,
+    /// At the nodes.
+    readings: Vec<ExcessEvidence>,
+    /// From gains at the nodes to the coefficients of x/x_max, (x/x_max)², …: a row each.
+    to_coefficients: Vec<Vec<f64>>,
+    /// By row, power and column, padded as histograms are.
+    coefficients: Vec<f32>,
+}
+
+/// S_q, of each power.
+pub(super) struct PowerSums {
+    count: usize,
+    sums: [Lanes; MOST],
+}
+
+impl Polynomials {
+    /// Of shares up to the `largest`; `evidence` is what a share says.
+    pub(super) fn new(grid: Grid, largest: f64, evidence: impl Fn(f64) -> Evidence) -> Self {
+        let largest = largest.max(1e-9);
+        let probes = ProbeHistograms::new(&evidence(largest));
+        let fits = |degree: &usize| error(*degree, largest, &probes, &evidence) <= TOLERANCE;
+        let degree = (2..MOST).find(fits).unwrap_or(MOST);
+        let nodes = nodes(degree);
+        let readings = nodes.iter().map(|t| evidence(t * largest).excess()).collect();
+        Self {
+            grid,
+            largest,
+            readings,
+            to_coefficients: inverse(&nodes),
+            coefficients: vec![0.0; grid.height() * degree * padded(grid.width())],
+        }
+    }
+
+    /// About how many bytes this takes.
+    pub(super) fn bytes(size: &Size) -> f64 {
+        4.0 * as_f64(MOST) * size.padded()
+    }
+
+    fn degree(&self) -> usize {
+        self.readings.len()
+    }
+
+    /// Takes over blocks of cells that changed, given in ascending order.
+    pub(super) fn update(&mut self, arch: Arch, belief: &Belief, changed: &[usize]) {
+        let (per_row, stride) = (groups_per_row(&self.grid), padded(self.grid.width()));
+        let (degree, width) = (self.degree(), self.grid.width());
+        let Self { readings, to_coefficients, coefficients, .. } = self;
+        let of_row = |y: usize| {
+            let place = |block: usize| changed.partition_point(|changed| *changed < block);
+            &changed[place(y * per_row)..place((y + 1) * per_row)]
+        };
+        let rows = coefficients.par_chunks_mut(degree * stride).enumerate().with_min_len(8);
+        rows.for_each(|(y, row)| {
+            for block in of_row(y) {
+                let x = block % per_row * LANES;
+                let gains = || {
+                    let prior = belief.prior(*block);
+                    let mut gains = [[0.0; LANES]; MOST];
+                    gains.iter_mut().zip(&*readings).for_each(|(g, r)| *g = r.gain(&prior));
+                    gains
+                };
+                let gains = arch.dispatch(gains);
+                for (power, weights) in to_coefficients.iter().enumerate() {
+                    let out = &mut row[power * stride + PAD + x..][..LANES.min(width - x)];
+                    for (lane, out) in out.iter_mut().enumerate() {
+                        // The weights are large, of either sign, and nearly cancel.
+                        let terms = weights.iter().zip(&gains);
+                        *out = to_f32(terms.map(|(w, gain)| w * f64::from(gain[lane])).sum());
+                    }
+                }
+            }
+        });
+    }
+
+    /// The coefficients of the cells from a column of a row on.
+    #[inline(always)]
+    fn coefficients(&self, (y, x): (usize, isize)) -> &[f32] {
+        let stride = padded(self.grid.width());
+        &self.coefficients[y * self.degree() * stride + PAD.wrapping_add_signed(x)..]
+    }
+
+    /// Adds the gains by the shares `weight`·x.
+    #[inline(always)]
+    pub(super) fn add(&self, sum: &mut Lanes, place: (usize, isize), x: &Lanes, weight: f32) {
+        let (stride, coefficients) = (padded(self.grid.width()), self.coefficients(place));
+        let scale = weight / to_f32(self.largest);
+        let mut gain = [0.0; LANES];
+        for power in (0..self.degree()).rev() {
+            let coefficient = lanes_at(coefficients, power * stride);
+            for lane in 0..LANES {
+                gain[lane] = (gain[lane] + coefficient[lane]) * (x[lane] * scale);
+            }
+        }
+        for lane in 0..LANES {
+            sum[lane] += gain[lane];
+        }
+    }
+
+    /// Sums to which nothing is added yet.
+    #[inline(always)]
+    pub(super) fn no_sums(&self) -> PowerSums {
+        PowerSums { count: self.degree(), sums: [[0.0; LANES]; MOST] }
+    }
+
+    /// Adds the gains by the shares `weight`·x for all the x that were added to the sums.
+    #[inline(always)]
+    pub(super) fn add_sums(
+        &self,
+        gain: &mut Lanes,
+        place: (usize, isize),
+        sums: &PowerSums,
+        weight: f32,
+    ) {
+        let (stride, coefficients) = (padded(self.grid.width()), self.coefficients(place));
+        let scale = weight / to_f32(self.largest);
+        let mut factor = 1.0;
+        for (power, sum) in sums.sums[..self.degree()].iter().enumerate() {
+            factor *= scale;
+            let coefficient = lanes_at(coefficients, power * stride);
+            for lane in 0..LANES {
+                gain[lane] += factor * (coefficient[lane] * sum[lane]);
+            }
+        }
+    }
+}
+
+impl PowerSums {
+    /// Adds p·x^q to every sum.
+    #[inline(always)]
+    pub(super) fn add(&mut self, probability: &Lanes, x: &Lanes) {
+        let mut term = *probability;
+        for sum in &mut self.sums[..self.count] {
+            for lane in 0..LANES {
+                term[lane] *= x[lane];
+                sum[lane] += term[lane];
+            }
+        }
+    }
+}
+
+/// Chebyshev's nodes of \[0, 1\].
+fn nodes(degree: usize) -> Vec<f64> {
+    let node =
+        |j: usize| 0.5 - 0.5 * libm::cos(std::f64::consts::PI * (as_f64(j) + 0.5) / as_f64(degree));
+    (0..degree).map(node).collect()
+}
+
+/// The inverse of the matrix of t_j^q, q = 1, 2, …: from values at the nodes to coefficients.
+fn inverse(nodes: &[f64]) -> Vec<Vec<f64>> {
+    let n = nodes.len();
+    let power = |t: f64, q: usize| (0..=q).fold(1.0, |power, _| power * t);
+    let matrix = nalgebra::DMatrix::from_fn(n, n, |j, q| power(nodes[j], q));
+    let inverse = matrix.try_inverse().unwrap_or_else(|| nalgebra::DMatrix::zeros(n, n));
+    (0..n).map(|q| inverse.row(q).iter().copied().collect()).collect()
+}
+
+/// The largest error of an interpolation by so many nodes, in units of the largest gain of its probe.
+fn error(
+    degree: usize,
+    largest: f64,
+    probes: &ProbeHistograms,
+    evidence: &impl Fn(f64) -> Evidence,
+) -> f64 {
+    let gains = |t: f64| probes.gains(&evidence(t * largest));
+    let nodes = nodes(degree);
+    let (inverse, at_nodes) =
+        (inverse(&nodes), nodes.iter().map(|t| gains(*t)).collect::<Vec<_>>());
+    let most: Vec<f64> = (0..=8)
+        .map(|i| gains(f64::from(i) / 8.0))
+        .fold(vec![1e-12; at_nodes[0].len()], |most, gains| {
+            most.iter().zip(&gains).map(|(m, g)| m.max(g.abs())).collect()
+        });
+    let overall = most.iter().copied().fold(0.0, f64::max);
+    let between = (0..4 * degree).map(|i| (as_f64(i) + 0.5) / as_f64(4 * degree));
+    let off = between.flat_map(|t| {
+        let exact = gains(t);
+        let value = |probe: usize| {
+            let coefficient =
+                |q: usize| inverse[q].iter().zip(&at_nodes).map(|(w, g)| w * g[probe]).sum::<f64>();
+            (0..degree).rev().fold(0.0, |value, q| (value + coefficient(q)) * t)
+        };
+        let off = |(probe, exact): (usize, &f64)| {
+            (value(probe) - exact).abs() / (most[probe] + 0.05 * overall)
+        };
+        exact.iter().enumerate().map(off).collect::<Vec<_>>()
+    });
+    off.fold(0.0, f64::max)
+}
