@@ -2,7 +2,9 @@
 #![allow(missing_docs, clippy::unwrap_used, reason = "a benchmark")]
 
 use covmap::{CoverageMap, Grid};
-use covmap_gain::{GainCache, RangePrediction, Upkeep, ViewPoints, expected_information_gain};
+use covmap_gain::{
+    GainCache, InformationGain, RangePrediction, Upkeep, ViewPoints, expected_information_gain,
+};
 use covmap_model::{ModelParameters, SensorModel, integrate};
 use covmap_sonar::{Range, Scan, SonarRing};
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
@@ -12,7 +14,11 @@ fn bench(c: &mut Criterion) {
     let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1).unwrap();
     let grid = Grid::new(Point2::new(-5.0, -5.0), 0.1, 100, 100).unwrap();
     let mut map = CoverageMap::new(grid, 11).unwrap();
-    let prediction = RangePrediction { unknown_reflection: 0.0, uniform_share: 0.0 };
+    let prediction = RangePrediction {
+        gain: InformationGain::Eq14,
+        unknown_reflection: 0.0,
+        uniform_share: 0.0,
+    };
     let mut cache = GainCache::new(&model, 0.0, grid, prediction, Upkeep::Kept).unwrap();
     let home = grid.cell_at(Point2::origin()).unwrap();
     for turn in 0..10 {

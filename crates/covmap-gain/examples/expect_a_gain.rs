@@ -7,7 +7,9 @@
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
 use covmap::{CoverageMap, Grid};
-use covmap_gain::{GainCache, RangePrediction, Upkeep, ViewPoints, expected_information_gain};
+use covmap_gain::{
+    GainCache, InformationGain, RangePrediction, Upkeep, ViewPoints, expected_information_gain,
+};
 use covmap_model::{ModelParameters, SensorModel, integrate};
 use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
@@ -17,7 +19,11 @@ fn main() -> Result<(), Box<dyn Error>> {
     let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1)?;
     let grid = Grid::new(Point2::new(-4.0, -3.0), 0.1, 80, 60)?;
     let mut map = CoverageMap::new(grid, model.parameters().bins)?;
-    let prediction = RangePrediction { unknown_reflection: 0.0, uniform_share: 0.0 };
+    let prediction = RangePrediction {
+        gain: InformationGain::Eq14,
+        unknown_reflection: 0.0,
+        uniform_share: 0.0,
+    };
     let mut cache = GainCache::new(&model, 0.0, grid, prediction, Upkeep::Kept)?;
 
     // Five scans on the left, among walls; nothing is known of the right.

@@ -9,7 +9,7 @@
 use crate::memory::Size;
 use crate::numbers::to_f32;
 use crate::view_points::{group_and_lane, groups_per_row};
-use crate::{RangePrediction, Stencil};
+use crate::{InformationGain, RangePrediction, Stencil};
 use covmap::lanes::{LANES, Lanes};
 use covmap::{Cell, CoverageMap, Grid, MAX_BINS, bin_coverage};
 
@@ -27,6 +27,9 @@ pub(crate) struct Belief {
     reflections: Vec<f64>,
     /// Bordered: how many of the [`LANES`] cells from here on reflect anything.
     reflecting: Vec<u8>,
+    /// Bordered: the expected coverage, where gains are predicted by it; else empty.
+    means: Vec<f64>,
+    unknown_coverage: f64,
     /// Bordered: the distance up to which the cell is a reason to measure \[m\]; 0 if it is none.
     limits: Vec<f32>,
     /// By block: entropies \[nats\].
@@ -111,6 +114,7 @@ impl Belief {
         bins: usize,
         stencil: &Stencil,
         prediction: RangePrediction,
+        unknown_coverage: f64,
     ) -> Self {
         let border = usize::try_from(stencil.radius).unwrap_or(0);
         let bordered = (grid.width() + 2 * border) * (grid.height() + 2 * border);
@@ -118,6 +122,7 @@ impl Belief {
         reflection_of.extend([prediction.unknown_reflection, 0.0, 0.0]);
         #[allow(clippy::cast_possible_truncation, reason = "at most 67 codes")]
         let outside = (bins + OUTSIDE) as u8;
+        let by_means = prediction.gain == InformationGain::MutualInformation;
         // Lanes past the last cell of a row read on.
         let bordered = bordered + LANES;
         let blocks = grid.height() * groups_per_row(&grid);
@@ -127,6 +132,8 @@ impl Belief {
             bins,
             border,
             codes: vec![outside; bordered],
+            means: vec![0.0; if by_means { bordered } else { 0 }],
+            unknown_coverage,
             limits: vec![0.0; bordered],
             reflection_of,
             reflections: vec![0.0; bordered],
@@ -149,8 +156,8 @@ impl Belief {
 
     /// About how many bytes this takes.
     pub(crate) fn bytes(size: &Size) -> f64 {
-        // Codes, limits, reflections, how many reflect, and expected coverages.
-        const BORDERED: f64 = 1.0 + 4.0 + 8.0 + 1.0 + 4.0;
+        // Codes, limits, reflections, how many reflect, and expected coverages, perhaps twice.
+        const BORDERED: f64 = 1.0 + 4.0 + 8.0 + 1.0 + 4.0 + 8.0;
         // Of a block entropies, whether it is changeable, and that it changed.
         const BLOCK: f64 = 128.0 + 9.0;
         let histograms = 8.0 * size.bins * size.padded();
@@ -192,6 +199,10 @@ impl Belief {
         #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for speed")]
         let expected = if code == self.bins + UNKNOWN { NOT_KNOWN } else { map.mean(cell) as f32 };
         self.expected[bordered] = expected;
+        if let Some(mean) = self.means.get_mut(bordered) {
+            let is_known = code != self.bins + UNKNOWN;
+            *mean = if is_known { map.mean(cell) } else { self.unknown_coverage };
+        }
         let old = std::mem::replace(&mut self.reflections[bordered], rho);
         if (old > 0.0) != (rho > 0.0) {
             // At the very beginning of the raster there are fewer.
@@ -211,6 +222,8 @@ impl Belief {
         for (bin, p) in posterior.iter().enumerate() {
             let at = first + bin * stride;
             let tilted = p * (libm::log(*p) + entropy);
+            // The relative entropy is the fall of the entropy without this term.
+            let tilted = if self.means.is_empty() { tilted } else { 0.0 };
             let numbers = if changeable { (*p, tilted) } else { (0.0, 0.0) };
             (self.h[at], self.h_hat[at]) = (to_f32(numbers.0), to_f32(numbers.1));
         }
@@ -246,6 +259,12 @@ impl Belief {
     /// ρ of all cells, a bordered raster.
     pub(crate) fn reflections(&self) -> &[f64] {
         &self.reflections
+    }
+
+    /// How much cells reflect where gains are predicted by expected coverages, a bordered raster;
+    /// empty where they are not.
+    pub(crate) fn means(&self) -> &[f64] {
+        &self.means
     }
 
     /// Whether any of the [`LANES`] cells from an index of the bordered rasters on reflects.
@@ -316,9 +335,10 @@ mod tests {
         let stencil = Stencil::new(&model, 0.0);
         let grid = Grid::new(Point2::new(-2.0, -1.0), 0.1, 41, 23).unwrap();
         for unknown_reflection in [0.0, 0.3] {
-            let prediction = RangePrediction { unknown_reflection, uniform_share: 0.0 };
+            let gain = InformationGain::Eq14;
+            let prediction = RangePrediction { gain, unknown_reflection, uniform_share: 0.0 };
             let mut map = CoverageMap::new(grid, 11).unwrap();
-            let mut belief = Belief::new(grid, 11, &stencil, prediction);
+            let mut belief = Belief::new(grid, 11, &stencil, prediction, 0.0);
             for turn in 0..6u32 {
                 let at = Vector2::new(0.3 * f64::from(turn) - 1.0, 0.0);
                 let range = |i: u32| Range::Echo(0.4 + 0.05 * f64::from((i * 7 + turn) % 24));

@@ -11,10 +11,10 @@ use crate::outcomes::{AskedRow, RowGains};
 use crate::sight::{GroupLikelihood, RasterBeam};
 use crate::stencil::FARTHEST;
 use crate::view_points::groups_per_row;
-use crate::{BeamError, RangePrediction, Stencil, ViewPoints};
+use crate::{BeamError, InformationGain, RangePrediction, Stencil, ViewPoints};
 use covmap::lanes::{LANES, Lanes};
 use covmap::{Cell, CoverageMap, Grid};
-use covmap_model::{Registers, SensorModel};
+use covmap_model::{ModelParameters, Registers, SensorModel};
 use pulp::Arch;
 use rayon::prelude::*;
 use rows::{AskOutcomes, RefreshBounds, RefreshSight, average, up_to_date};
@@ -84,7 +84,7 @@ impl GainCache {
     /// A cache that knows nothing of the map yet. `heading` is the one that the ring keeps \[rad\].
     ///
     /// # Errors
-    /// If a beam covers too many cells.
+    /// If a beam covers too many cells, or the update predicts nothing that it is asked for.
     pub fn new(
         model: &SensorModel,
         heading: f64,
@@ -101,7 +101,12 @@ impl GainCache {
         if most >= usize::from(u16::MAX) {
             return Err(BeamError::TooFine(most));
         }
-        let belief = Belief::new(grid, model.parameters().bins, &stencil, prediction);
+        let ModelParameters { bins, update, .. } = model.parameters();
+        let unknown = update.cause().map(|cause| cause.unknown_coverage);
+        if prediction.gain == InformationGain::MutualInformation && unknown.is_none() {
+            return Err(BeamError::NoPrediction);
+        }
+        let belief = Belief::new(grid, *bins, &stencil, prediction, unknown.unwrap_or(0.0));
         let groups = grid.height() * groups_per_row(&grid);
         let group_beams = groups * stencil.beams.len();
         let beam = |beam| RasterBeam::new(beam, &belief, prediction.uniform_share);

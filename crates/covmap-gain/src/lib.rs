@@ -12,14 +12,18 @@
 //!
 //! ```
 //! use covmap::Grid;
-//! use covmap_gain::{GainCache, RangePrediction, Upkeep, ViewPoints};
+//! use covmap_gain::{GainCache, InformationGain, RangePrediction, Upkeep, ViewPoints};
 //! use covmap_model::{ModelParameters, SensorModel};
 //! use covmap_sonar::SonarRing;
 //! use nalgebra::Point2;
 //!
 //! let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.2)?;
 //! let grid = Grid::new(Point2::origin(), 0.2, 40, 30)?;
-//! let prediction = RangePrediction { unknown_reflection: 0.0, uniform_share: 0.0 };
+//! let prediction = RangePrediction {
+//!     gain: InformationGain::Eq14,
+//!     unknown_reflection: 0.0,
+//!     uniform_share: 0.0,
+//! };
 //! let mut gains = GainCache::new(&model, 0.0, grid, prediction, Upkeep::Kept)?;
 //! gains.refresh_gains(&ViewPoints::one(&grid, 620));
 //! assert!(gains.gain(620) > 0.0);
@@ -49,6 +53,8 @@ mod memory;
 
 pub use cache::{GAIN_TOLERANCE, GainCache, Upkeep};
 pub use literal::expected_information_gain;
-pub use range_likelihood::{RangeLikelihood, RangePrediction, range_likelihood, reflection};
+pub use range_likelihood::{
+    InformationGain, RangeLikelihood, RangePrediction, range_likelihood, reflection,
+};
 pub use stencil::{BeamError, BeamStencil, Stencil, StencilCell};
 pub use view_points::ViewPoints;

@@ -2,7 +2,7 @@
 //!
 //! This file is the equations as printed, in f64: the oracle. [`crate::product`] holds what runs.
 
-use crate::{BeamStencil, RangeLikelihood, RangePrediction, Stencil, StencilCell};
+use crate::{BeamStencil, InformationGain, RangeLikelihood, RangePrediction, Stencil, StencilCell};
 use crate::{range_likelihood, reflection};
 use covmap::{Cell, CoverageMap, Histogram, product};
 use covmap_model::{CauseParameters, Causes, Clues, Outcome, SensorModel};
@@ -13,7 +13,8 @@ use covmap_model::{CauseParameters, Causes, Clues, Outcome, SensorModel};
 /// E\[I(l)\] = Σ_d p(d | c) · Σ_{c_i ∈ C(l,d)} I(h(c_i) | d)
 /// ```
 ///
-/// `view_point` is l; d runs over the ranges of the stencil and "no echo". I may be negative
+/// With [`InformationGain::MutualInformation`] I is Σ h'·log(h'/h), the relative entropy, and
+/// p(d | c) is predicted from expected coverages. `view_point` is l; d runs over the ranges of the stencil and "no echo". I may be negative
 /// for a surprising d. This is the literal evaluation that the fast one is tested against.
 pub fn expected_information_gain(
     map: &CoverageMap,
@@ -39,18 +40,31 @@ fn beam_gain(
 ) -> f64 {
     let cell = |i: usize| view_point.offset(beam.cells[i].dx, beam.cells[i].dy);
     let mut likelihood = RangeLikelihood::default();
-    let rho = |i| reflection(map, cell(i), prediction.unknown_reflection);
+    let rho = |i| match (prediction.gain, model.parameters().update.cause()) {
+        (InformationGain::MutualInformation, Some(cause)) => expected(map, cell(i), cause),
+        _ => reflection(map, cell(i), prediction.unknown_reflection),
+    };
     range_likelihood(beam, prediction.uniform_share, rho, &mut likelihood);
     let mut expected = 0.0;
     for k in 0..stencil.outcomes() {
         let p = likelihood.probability(k);
         if p > 0.0 {
             let imagined = Imagined::new(map, model, beam, view_point, stencil.outcome(k));
-            let gain = |i: usize| imagined.information_gain(map, cell(i), &beam.cells[i]);
+            let gain =
+                |i: usize| imagined.information_gain(map, cell(i), &beam.cells[i], prediction.gain);
             expected += p * (0..beam.reach(k)).map(gain).sum::<f64>();
         }
     }
     expected
+}
+
+/// The expected coverage of a cell; 0 outside of the grid.
+fn expected(map: &CoverageMap, cell: Cell, parameters: &CauseParameters) -> f64 {
+    match map.grid().index(cell) {
+        None => 0.0,
+        Some(_) if map.is_known(cell) => map.mean(cell),
+        Some(_) => parameters.unknown_coverage,
+    }
 }
 
 /// A reading that is imagined: what it would mean, and, with the update by cause, who would have
@@ -88,7 +102,13 @@ impl<'a> Imagined<'a> {
 
     /// The information gain in one cell, Eq. (13): `I(h | d) = H(h) − H(h'_d)`. Nothing is gained
     /// outside the map and in cells that nothing can change.
-    fn information_gain(&self, map: &CoverageMap, cell: Cell, met: &StencilCell) -> f64 {
+    fn information_gain(
+        &self,
+        map: &CoverageMap,
+        cell: Cell,
+        met: &StencilCell,
+        gain: InformationGain,
+    ) -> f64 {
         if map.grid().index(cell).is_none() || map.is_pinned(cell) {
             return 0.0;
         }
@@ -103,7 +123,11 @@ impl<'a> Imagined<'a> {
                 causes.evidence(parameters, r, met.met(), self.outcome, &mut evidence);
             }
         }
-        product(&prior, &evidence, &mut posterior);
+        let z = product(&prior, &evidence, &mut posterior);
+        if gain == InformationGain::MutualInformation {
+            let terms = posterior.iter().zip(&prior);
+            return terms.map(|(after, before)| after / z * libm::log(after / z / before)).sum();
+        }
         // The entropy that the map keeps is rounded: too coarse where a reading says little.
         let entropy =
             |weights: &[f64]| Histogram::from_weights(weights).map_or(0.0, |h| h.entropy());

@@ -2,10 +2,26 @@
 
 use crate::BeamStencil;
 use covmap::{Cell, CoverageMap};
+use serde::{Deserialize, Serialize};
 
-/// How ranges are predicted where the map does not say.
+/// What is expected of a view-point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum InformationGain {
+    /// The paper's: by how much the entropies are expected to fall, Eq. (14), with ranges that are
+    /// predicted from the most likely map. It may be negative: a surprise makes a histogram wider.
+    Eq14,
+    /// What is expected to be learnt, by Lindley \[1956\] and never negative: the relative entropy
+    /// of the histograms after the reading to those before it, with ranges that are predicted from
+    /// the map that explains them, by expected coverages. With the update by cause only: Eq. (9) has
+    /// no prediction of its own.
+    MutualInformation,
+}
+
+/// How ranges are predicted, and what is expected of them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RangePrediction {
+    /// What is expected of a view-point.
+    pub gain: InformationGain,
     /// c_u: how much an unknown cell reflects, in \[0, 1\].
     pub unknown_reflection: f64,
     /// η: the share of every predicted range's probability that is spread over all ranges, in

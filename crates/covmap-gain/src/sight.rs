@@ -103,10 +103,31 @@ impl RasterBeam {
         &self.offsets
     }
 
-    /// The likelihood of every outcome, written to `out`. `here` is the index of the group's first
-    /// view-point in the bordered rasters.
+    /// The likelihood of every outcome by the most likely map, written to `out`: what decides what
+    /// is in sight. `here` is the index of the group's first view-point in the bordered rasters.
     #[inline(always)]
     pub(crate) fn predict(&self, belief: &Belief, here: usize, out: &mut GroupLikelihood) {
+        let reflects = |offset: &isize| belief.any_reflects(here.wrapping_add_signed(*offset));
+        self.predict_by(belief.reflections(), reflects, here, out);
+    }
+
+    /// The same as gains are predicted.
+    #[inline(always)]
+    pub(crate) fn predict_gain(&self, belief: &Belief, here: usize, out: &mut GroupLikelihood) {
+        match belief.means() {
+            [] => self.predict(belief, here, out),
+            means => self.predict_by(means, |_| true, here, out),
+        }
+    }
+
+    #[inline(always)]
+    fn predict_by(
+        &self,
+        reflections: &[f64],
+        reflects: impl Fn(&isize) -> bool,
+        here: usize,
+        out: &mut GroupLikelihood,
+    ) {
         let rings = self.stencil.rings.len();
         let even = self.uniform_share / (as_f64(rings) + 1.0);
         let keep = 1.0 - self.uniform_share;
@@ -116,11 +137,10 @@ impl RasterBeam {
         let mut survival = [1.0; LANES];
         for (k, ring) in self.stencil.rings.iter().enumerate() {
             let offsets = &self.offsets[ring.clone()];
-            let reflects = |offset: &isize| belief.any_reflects(here.wrapping_add_signed(*offset));
             let mut q = [0.0; LANES];
-            if offsets.iter().any(reflects) {
+            if offsets.iter().any(&reflects) {
                 for (offset, weight) in offsets.iter().zip(&self.stencil.weights[ring.clone()]) {
-                    let rho: &Lanes64 = at_offset(belief.reflections(), here, *offset);
+                    let rho: &Lanes64 = at_offset(reflections, here, *offset);
                     for lane in 0..LANES {
                         q[lane] += weight * rho[lane];
                     }
@@ -185,7 +205,18 @@ impl RasterBeam {
     /// How many of the beam's cells decide what some view-points see and gain: those that may
     /// reflect, and those that a possible outcome covers.
     #[inline(always)]
-    pub(crate) fn horizon(&self, likelihood: &GroupLikelihood, view_points: u16) -> u16 {
+    pub(crate) fn horizon(
+        &self,
+        belief: &Belief,
+        likelihood: &GroupLikelihood,
+        view_points: u16,
+    ) -> u16 {
+        #[allow(clippy::cast_possible_truncation, reason = "longer beams are refused")]
+        let all = self.offsets.len() as u16;
+        if !belief.means().is_empty() {
+            // Of expected coverages hardly one is 0 or 1: any range is possible.
+            return all;
+        }
         let mut farthest = [0.0; LANES];
         for (k, p) in likelihood.echoes.iter().chain([&likelihood.no_echo]) {
             let reach = as_f64(self.stencil.reach(*k));

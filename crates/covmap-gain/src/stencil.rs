@@ -56,15 +56,20 @@ pub struct Stencil {
 /// Beams of more cells than this from end to end are refused: two hundred metres in cells of 0.1 m.
 pub(crate) const FARTHEST: f64 = 2000.0;
 
-/// Why a beam is refused.
+/// Why gains cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BeamError {
-    /// It covers more cells than can be numbered.
+    /// A beam covers more cells than can be numbered.
     #[error(
         "a beam covers {0} cells, 65535 are too many: use a coarser resolution, a shorter usable range or a narrower footprint"
     )]
     TooFine(usize),
-    /// It reaches too far, in cells.
+    /// The update says nothing of what will be measured.
+    #[error(
+        "planner.gain: MutualInformation needs the update by cause, which predicts what it explains; with Eq. (9) take Eq14"
+    )]
+    NoPrediction,
+    /// A beam reaches too far, in cells.
     #[error(
         "a beam reaches {0:.0} cells far, {FARTHEST} are too many: use a coarser resolution or a shorter usable range"
     )]

@@ -4,7 +4,7 @@
 
 use covmap::{CoverageMap, Grid};
 use covmap_gain::{
-    BeamError, GAIN_TOLERANCE, GainCache, RangePrediction, Upkeep, ViewPoints,
+    BeamError, GAIN_TOLERANCE, GainCache, InformationGain, RangePrediction, Upkeep, ViewPoints,
     expected_information_gain,
 };
 use covmap_model::{
@@ -16,7 +16,8 @@ use nalgebra::{Isometry2, Point2};
 use proptest::prelude::*;
 use std::f64::consts::PI;
 
-const PLAIN: RangePrediction = RangePrediction { unknown_reflection: 0.0, uniform_share: 0.0 };
+const PLAIN: RangePrediction =
+    RangePrediction { gain: InformationGain::Eq14, unknown_reflection: 0.0, uniform_share: 0.0 };
 
 /// One view-point of so many is compared with the literal equations, which are slow.
 const SAMPLED: usize = 37;
@@ -161,7 +162,8 @@ fn check(mut s: Setting, scans: Vec<(f64, f64, Vec<Range>)>) -> Result<(), TestC
     for scan in scans {
         s.scan(&scan);
         let gains = s.gains();
-        let largest = gains.iter().map(|gain| gain.abs()).fold(0.0, f64::max);
+        // Where nothing is gained anywhere, rounding is all that is left.
+        let largest = gains.iter().map(|gain| gain.abs()).fold(1e-9, f64::max);
         for (index, gain) in gains.iter().enumerate().step_by(SAMPLED) {
             let cell = s.map.grid().cell(index);
             let stencil = s.cache.stencil();
@@ -189,7 +191,7 @@ proptest! {
                 (product.sigma_out.base, product.sigma_in) = (0.12, 0.3);
             });
         }
-        let prediction = RangePrediction { unknown_reflection: unknown, uniform_share: share };
+        let prediction = RangePrediction { gain: InformationGain::Eq14, unknown_reflection: unknown, uniform_share: share };
         check(Setting::new(&model, &SonarRing::b21r(), prediction), scans)?;
     }
 
@@ -213,8 +215,22 @@ proptest! {
         share in prop_oneof![3 => Just(0.0), 1 => 0.0..0.2f64],
         unknown in prop_oneof![Just(0.0), 0.0..0.5f64]
     ) {
-        let prediction = RangePrediction { unknown_reflection: unknown, uniform_share: share };
+        let prediction = RangePrediction { gain: InformationGain::Eq14, unknown_reflection: unknown, uniform_share: share };
         check(Setting::new(&model, &ring(offset), prediction), scans)?;
+    }
+
+    #[test]
+    fn mutual_information_is_the_literal_one_and_never_negative(
+        model in some_causes(), scans in some_scans(), share in prop_oneof![Just(0.0), 0.0..0.2f64]
+    ) {
+        let gain = InformationGain::MutualInformation;
+        let prediction = RangePrediction { gain, unknown_reflection: 0.0, uniform_share: share };
+        let mut s = Setting::new(&model, &SonarRing::b21r(), prediction);
+        scans.iter().for_each(|scan| s.scan(scan));
+        let gains = s.gains();
+        let largest = gains.iter().copied().fold(1e-9, f64::max);
+        prop_assert!(gains.iter().all(|gain| *gain >= -GAIN_TOLERANCE * largest));
+        check(s, scans)?;
     }
 
     #[test]

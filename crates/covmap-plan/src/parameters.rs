@@ -2,7 +2,7 @@
 
 use crate::{Strategy, StrategyError};
 use covmap::short;
-use covmap_gain::{BeamError, RangePrediction, Upkeep};
+use covmap_gain::{BeamError, InformationGain, RangePrediction, Upkeep};
 use serde::{Deserialize, Serialize};
 
 /// When a cell is given up whose entropy does not fall any longer.
@@ -54,6 +54,8 @@ pub enum BodyEvidence {
 pub struct PlannerParameters {
     /// How the next view-point is chosen.
     pub strategy: Strategy,
+    /// What a view-point is expected to gain: the paper's Eq. (14), or mutual information.
+    pub gain: InformationGain,
     /// ε: a cell with an entropy up to this is explored \[nats\].
     pub entropy_threshold: f64,
     /// A smaller fall of a cell's entropy is a stall \[nats\]: the paper's .001.
@@ -119,6 +121,7 @@ impl PlannerParameters {
     pub fn standard() -> Self {
         Self {
             strategy: Strategy::IgCl { alpha: 0.3 },
+            gain: InformationGain::Eq14,
             entropy_threshold: 0.6,
             min_entropy_change: 0.001,
             stall_limit: 5,
@@ -155,8 +158,8 @@ impl PlannerParameters {
 
     /// How ranges are predicted.
     pub fn range_prediction(&self) -> RangePrediction {
-        let Self { unknown_reflection, uniform_share, .. } = *self;
-        RangePrediction { unknown_reflection, uniform_share }
+        let Self { gain, unknown_reflection, uniform_share, .. } = *self;
+        RangePrediction { gain, unknown_reflection, uniform_share }
     }
 
     /// Strategies that weigh gains keep them; the others report some few.

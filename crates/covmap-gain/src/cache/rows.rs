@@ -42,7 +42,7 @@ impl WithSimd for RefreshSight<'_> {
                     beam.predict(belief, here, likelihood);
                     *in_sight = beam.in_sight(likelihood);
                     let before = if state.sight == 0 { 0 } else { state.horizon };
-                    state.horizon = before.max(beam.horizon(likelihood, wanted));
+                    state.horizon = before.max(beam.horizon(belief, likelihood, wanted));
                     state.sight |= wanted;
                     state.reason = 0;
                 }
@@ -84,7 +84,7 @@ impl WithSimd for AskOutcomes<'_> {
                 if wanted & !known == 0 {
                     continue;
                 }
-                beam.predict(belief, here + group * LANES, likelihood);
+                beam.predict_gain(belief, here + group * LANES, likelihood);
                 let first = row.outcomes.len();
                 likelihood.for_each_likely(*wanted, |k, p| {
                     row.outcomes.push(k);

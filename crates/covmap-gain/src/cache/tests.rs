@@ -21,7 +21,11 @@ fn kinds() -> Vec<Arch> {
 
 /// A cache that knows nothing yet.
 fn kept(model: &SensorModel, grid: Grid) -> GainCache {
-    let prediction = RangePrediction { unknown_reflection: 0.0, uniform_share: 0.0 };
+    let prediction = RangePrediction {
+        gain: InformationGain::Eq14,
+        unknown_reflection: 0.0,
+        uniform_share: 0.0,
+    };
     GainCache::new(model, 0.1, grid, prediction, Upkeep::Kept).unwrap()
 }
 

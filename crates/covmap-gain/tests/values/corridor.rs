@@ -1,14 +1,16 @@
 //! A corridor that is one cell wide, and a cache that is told of it cell by cell.
 
 use covmap::{Cell, CoverageMap, Grid};
-use covmap_gain::{GainCache, RangePrediction, Upkeep, ViewPoints, expected_information_gain};
+use covmap_gain::{
+    GainCache, InformationGain, RangePrediction, Upkeep, ViewPoints, expected_information_gain,
+};
 use covmap_model::{ModelParameters, SensorModel};
 use covmap_sonar::{Beam, SonarRing};
 use nalgebra::{Isometry2, Point2};
 
 /// What is unknown reflects nothing.
 pub(crate) const PLAIN: RangePrediction =
-    RangePrediction { unknown_reflection: 0.0, uniform_share: 0.0 };
+    RangePrediction { gain: InformationGain::Eq14, unknown_reflection: 0.0, uniform_share: 0.0 };
 
 /// Cells of 1 m. The sensors are rays from the centre of the robot.
 pub(crate) struct Corridor {

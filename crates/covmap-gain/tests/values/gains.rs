@@ -29,7 +29,7 @@
 
 use super::close;
 use super::corridor::{Corridor, PLAIN};
-use covmap_gain::{RangePrediction, Upkeep};
+use covmap_gain::{InformationGain, RangePrediction, Upkeep};
 use covmap_model::{
     FootprintRule, Linear, ModelParameters, NoEchoParameters, ProductParameters, Update,
 };
@@ -102,7 +102,8 @@ fn unknown_cells_reflect_as_much_as_they_are_said_to() {
         corridor.know(3, &[0.8, 0.15, 0.05]);
         corridor.know(4, &[0.2, 0.5, 0.3]);
     };
-    let prediction = RangePrediction { unknown_reflection: 0.3, ..PLAIN };
+    let prediction =
+        RangePrediction { gain: InformationGain::Eq14, unknown_reflection: 0.3, ..PLAIN };
     check(&[0.0, 180.0], prediction, tell, 0.154_345_70);
 }
 

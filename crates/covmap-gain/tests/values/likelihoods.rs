@@ -17,7 +17,7 @@ use nalgebra::{Isometry2, Point2};
 /// A beam of two rings, of two cells each, with unequal weights. No echo covers all cells, and an
 /// echo all up to its ring.
 fn beam() -> BeamStencil {
-    let cell = |dx, cell_distance| StencilCell { dx, dy: 0, cell_distance };
+    let cell = |dx, cell_distance| StencilCell { dx, dy: 0, cell_distance, across: 0.5 };
     BeamStencil {
         cells: vec![cell(1, 0.9), cell(1, 1.1), cell(2, 1.9), cell(2, 2.1)],
         weights: vec![0.75, 0.25, 0.6, 0.4],
