@@ -114,7 +114,7 @@ impl GainCache {
             grid,
             upkeep,
             beams: stencil.beams.iter().map(beam).collect(),
-            evaluator: Evaluator::new(model, &stencil, grid, &belief, upkeep),
+            evaluator: Evaluator::new(model, &stencil, grid, &belief, (prediction.gain, upkeep)),
             onlookers: Onlookers::new(&stencil, grid),
             stencil,
             belief,

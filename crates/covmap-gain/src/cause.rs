@@ -31,7 +31,7 @@ use crate::memory::Size;
 use crate::numbers::to_f32;
 use crate::outcomes::{AskedRow, GroupBeam, RowGains};
 use crate::view_points::groups_per_row;
-use crate::{Stencil, evidence::Evidence};
+use crate::{InformationGain, Stencil, evidence::Evidence};
 use beam::CauseBeam;
 use causes::GroupCauses;
 use covmap::Grid;
@@ -69,6 +69,7 @@ impl Cause {
         stencil: &Stencil,
         grid: Grid,
         belief: &Belief,
+        gain: InformationGain,
     ) -> Self {
         let ModelParameters { bins, .. } = *model.parameters();
         let (p, r) = (parameters, model.resolution());
@@ -93,8 +94,8 @@ impl Cause {
             grid,
             beams: stencil.beams.iter().map(beam).collect(),
             at_end: AtEnd::new(p, bins),
-            front: Polynomials::new(grid, most_passed, evidence(0.0, p.free.sigma)),
-            behind: Polynomials::new(grid, most_behind, evidence(1.0, p.sigma_behind)),
+            front: Polynomials::new(grid, gain, most_passed, evidence(0.0, p.free.sigma)),
+            behind: Polynomials::new(grid, gain, most_behind, evidence(1.0, p.sigma_behind)),
             surface: vec![0.0; cells],
             clear: vec![1.0; cells],
         }

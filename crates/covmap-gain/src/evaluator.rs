@@ -11,7 +11,7 @@ use crate::memory::Size;
 use crate::outcomes::{AskedRow, RowGains};
 use crate::product::Product;
 use crate::sight::{GroupLikelihood, RasterBeam};
-use crate::{Stencil, Upkeep};
+use crate::{InformationGain, Stencil, Upkeep};
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
 use covmap_model::{SensorModel, Update};
@@ -33,7 +33,7 @@ impl Evaluator {
         stencil: &Stencil,
         grid: Grid,
         belief: &Belief,
-        upkeep: Upkeep,
+        (gain, upkeep): (InformationGain, Upkeep),
     ) -> Self {
         match &model.parameters().update {
             Update::Product(_) => {
@@ -41,7 +41,7 @@ impl Evaluator {
                 Self::Product(Box::new(Product::new(model, stencil, grid, belief, with_bounds)))
             }
             Update::Cause(parameters) => {
-                Self::Cause(Box::new(Cause::new(model, parameters, stencil, grid, belief)))
+                Self::Cause(Box::new(Cause::new(model, parameters, stencil, grid, belief, gain)))
             }
         }
     }

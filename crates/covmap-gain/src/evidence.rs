@@ -4,16 +4,17 @@
 //! much the evidence of a bin exceeds the least one, Eq. (13) is
 //!
 //! ```text
-//! I = (Σ ĥ·e + Σ h·w)/(1 + E) + E/(1 + E) − log(1 + E),   E = Σ h·e
-//! ĥ = h·(log h + H),   w = (1 + e)·log(1 + e) − e
+//! I = (Σ ĥ·e + Σ h·w(e) − w(E)) / (1 + E),   E = Σ h·e
+//! ĥ = h·(log h + H),   w(e) = (1 + e)·log(1 + e) − e
 //! ```
 //!
 //! so that no product is normalised, one logarithm is enough, and nothing large cancels: weak
-//! evidence (small e) has small terms only.
+//! evidence (small e) has small terms only. Without ĥ it is the relative entropy of the histogram
+//! after the reading to that before it.
 
 use crate::belief::BlockPrior;
 use crate::numbers::to_f32;
-use covmap::lanes::{LANES, Lanes, ln};
+use covmap::lanes::{LANES, Lanes, ln, map};
 use covmap_model::{Outcome, SensorModel};
 
 /// p(c | d) of one cell, in f64: what tables are made from.
@@ -61,6 +62,12 @@ impl Evidence {
         libm::log(z) - s / z
     }
 
+    /// The relative entropy of a histogram after the reading to that before it \[nats\].
+    pub(crate) fn relative_entropy(&self, h: &[f64]) -> f64 {
+        let z: f64 = h.iter().zip(&self.t).map(|(h, t)| h * t).sum();
+        h.iter().zip(&self.v).map(|(h, v)| h * v).sum::<f64>() / z - libm::log(z)
+    }
+
     pub(crate) fn excess(&self) -> ExcessEvidence {
         let least = self.t.iter().copied().fold(f64::INFINITY, f64::min);
         let above: Vec<f64> = self.t.iter().map(|t| t / least - 1.0).collect();
@@ -83,16 +90,56 @@ impl ExcessEvidence {
                 sum[lane] += h_hat[lane] * e + h[lane] * w;
             }
         }
-        let (mut z, mut gain) = ([0.0; LANES], [0.0; LANES]);
+        let mut gain = gains(&sum, &above);
         for lane in 0..LANES {
-            z[lane] = 1.0 + above[lane];
-        }
-        let log_z = ln(&z);
-        for lane in 0..LANES {
-            // E as it is in the logarithm, after rounding.
-            let above = z[lane] - 1.0;
-            gain[lane] = prior.changeable[lane] * ((sum[lane] + above) / z[lane] - log_z[lane]);
+            gain[lane] *= prior.changeable[lane];
         }
         gain
+    }
+}
+
+/// I of cells, by Σ ĥ·e + Σ h·w(e) and E of each.
+#[inline(always)]
+pub(crate) fn gains(sum: &Lanes, above: &Lanes) -> Lanes {
+    let of_all = w(above);
+    let mut gain = [0.0; LANES];
+    for lane in 0..LANES {
+        gain[lane] = (sum[lane] - of_all[lane]) / (1.0 + above[lane]);
+    }
+    gain
+}
+
+/// w(e) of numbers that are not negative, each to within 1e-6 of itself: by its series where the
+/// logarithm would cancel.
+#[inline(always)]
+pub(crate) fn w<const N: usize>(e: &[f32; N]) -> [f32; N] {
+    let z = map(e, |e| 1.0 + e);
+    let log = ln(&z);
+    let mut out = [0.0; N];
+    for i in 0..N {
+        let e = e[i];
+        let tail = 1.0 / 20.0 - e * (1.0 / 30.0 - e * (1.0 / 42.0 - e * (1.0 / 56.0)));
+        let series = e * e * (0.5 - e * (1.0 / 6.0 - e * (1.0 / 12.0 - e * tail)));
+        let far = z[i] * log[i] - (z[i] - 1.0);
+        out[i] = if e < 0.2 { series } else { far };
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn w_keeps_its_bound(e in prop_oneof![0.0..1.0f64, 0.0..1e-3f64, 0.19..0.21f64, 0.0..1e3f64]) {
+            let e = f64::from(to_f32(e));
+            let exact = (1.0 + e) * libm::log1p(e) - e;
+            let found = f64::from(w(&[to_f32(e)])[0]);
+            // In f64 the exact one cancels as well.
+            let tolerance = 3e-6 * exact + 1e-15;
+            prop_assert!((found - exact).abs() <= tolerance, "{e}: {found} {exact}");
+        }
     }
 }

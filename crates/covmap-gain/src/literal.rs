@@ -125,8 +125,12 @@ impl<'a> Imagined<'a> {
         }
         let z = product(&prior, &evidence, &mut posterior);
         if gain == InformationGain::MutualInformation {
+            // What the map keeps is rounded, and sums to 1 but for that.
+            let sum: f64 = prior.iter().sum();
             let terms = posterior.iter().zip(&prior);
-            return terms.map(|(after, before)| after / z * libm::log(after / z / before)).sum();
+            let of_bin =
+                |(after, before): (&f64, &f64)| after / z * libm::log((after / z) / (before / sum));
+            return terms.map(of_bin).sum();
         }
         // The entropy that the map keeps is rounded: too coarse where a reading says little.
         let entropy =

@@ -86,6 +86,11 @@ impl ProbeHistograms {
         self.gained(self.after(evidence))
     }
 
+    /// The relative entropy of every probe by a reading \[nats\].
+    pub(crate) fn relative_entropies(&self, evidence: &Evidence) -> Vec<f64> {
+        self.histograms.iter().map(|(h, _)| evidence.relative_entropy(h)).collect()
+    }
+
     /// The gains of all probes by each of some readings, in units of what an interpolated one may be
     /// off.
     pub(crate) fn in_tolerances(&self, readings: &[&Evidence]) -> Vec<Vec<f64>> {

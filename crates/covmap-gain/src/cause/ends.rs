@@ -2,8 +2,9 @@
 
 use super::beam::Kernel;
 use crate::belief::Prior;
+use crate::evidence::{gains, w};
 use crate::numbers::{as_f64, to_f32};
-use covmap::lanes::{LANES, Lanes, TOGETHER, flat, ln, map};
+use covmap::lanes::{LANES, Lanes, TOGETHER, flat};
 use covmap_model::{CauseParameters, gaussian};
 
 /// The gain of a cell by the shares s of its kernel and g of "passed".
@@ -45,30 +46,27 @@ impl AtEnd {
         }
         let (mut above, mut terms) = ([0.0; LANES], [0.0; LANES]);
         for first in (0..self.bins).step_by(TOGETHER) {
-            let mut t = [[1.0; LANES]; TOGETHER];
+            let mut excess = [[0.0; LANES]; TOGETHER];
             let weights = kernel.ended[first..].iter().zip(&self.free[first..]);
-            for ((bin, t), (ended, free)) in (first..).zip(&mut t).zip(weights) {
+            for ((bin, e), (ended, free)) in (first..).zip(&mut excess).zip(weights) {
                 let (h, h_hat) = (prior.h(bin), prior.h_hat(bin));
                 for lane in 0..LANES {
-                    let e = by_end[lane] * ended + by_free[lane] * free;
-                    above[lane] += h[lane] * e;
-                    terms[lane] += h_hat[lane] * e;
-                    t[lane] = 1.0 + e;
+                    e[lane] = by_end[lane] * ended + by_free[lane] * free;
+                    above[lane] += h[lane] * e[lane];
+                    terms[lane] += h_hat[lane] * e[lane];
                 }
             }
-            let logs = ln(&flat(&t));
-            let logs = logs.as_chunks::<LANES>().0;
-            for ((bin, t), log) in (first..self.bins).zip(&t).zip(logs) {
+            let all = w(&flat(&excess));
+            for (bin, w) in (first..self.bins).zip(all.as_chunks::<LANES>().0) {
                 let h = prior.h(bin);
                 for lane in 0..LANES {
-                    terms[lane] += h[lane] * (t[lane] * log[lane] - (t[lane] - 1.0));
+                    terms[lane] += h[lane] * w[lane];
                 }
             }
         }
-        let z = map(&above, |above| 1.0 + above);
-        let log_z = ln(&z);
+        let gain = gains(&terms, &above);
         for lane in 0..LANES {
-            sum[lane] += (terms[lane] + (z[lane] - 1.0)) / z[lane] - log_z[lane];
+            sum[lane] += gain[lane];
         }
     }
 }

@@ -1,9 +1,10 @@
 //! The gain of every cell as a function of one share, as a polynomial.
 //!
 //! For a kernel K the evidence of a cell is (1 − x)·U + x·K, and its gain an analytic function of
-//! the share x that is 0 at x = 0. It is interpolated in Chebyshev's nodes of \[0, x_max\], as many as
+//! the share x that is 0 at x = 0, and so is the slope of a relative entropy. It is interpolated in Chebyshev's nodes of \[0, x_max\], as many as
 //! the gains of histograms of all kinds need to be met.
 
+use crate::InformationGain;
 use crate::belief::{Belief, PAD, lanes_at, padded};
 use crate::evidence::{Evidence, ExcessEvidence};
 use crate::memory::Size;
@@ -26,6 +27,8 @@ const TOLERANCE: f64 = 2e-6;
 pub(super) struct Polynomials {
     grid: Grid,
     largest: f64,
+    /// The lowest power.
+    first: usize,
     /// At the nodes.
     readings: Vec<ExcessEvidence>,
     /// From gains at the nodes to the coefficients of x/x_max, (x/x_max)², …: a row each.
@@ -36,24 +39,41 @@ pub(super) struct Polynomials {
 
 /// S_q, of each power.
 pub(super) struct PowerSums {
+    first: usize,
     count: usize,
     sums: [Lanes; MOST],
 }
 
 impl Polynomials {
     /// Of shares up to the `largest`; `evidence` is what a share says.
-    pub(super) fn new(grid: Grid, largest: f64, evidence: impl Fn(f64) -> Evidence) -> Self {
+    pub(super) fn new(
+        grid: Grid,
+        gain: InformationGain,
+        largest: f64,
+        evidence: impl Fn(f64) -> Evidence,
+    ) -> Self {
         let largest = largest.max(1e-9);
         let probes = ProbeHistograms::new(&evidence(largest));
-        let fits = |degree: &usize| error(*degree, largest, &probes, &evidence) <= TOLERANCE;
+        let first = match gain {
+            InformationGain::Eq14 => 1,
+            InformationGain::MutualInformation => 2,
+        };
+        let gains = |share: f64| match gain {
+            InformationGain::Eq14 => probes.gains(&evidence(share * largest)),
+            InformationGain::MutualInformation => {
+                probes.relative_entropies(&evidence(share * largest))
+            }
+        };
+        let fits = |degree: &usize| error(*degree, first, gains) <= TOLERANCE;
         let degree = (2..MOST).find(fits).unwrap_or(MOST);
         let nodes = nodes(degree);
         let readings = nodes.iter().map(|t| evidence(t * largest).excess()).collect();
         Self {
             grid,
             largest,
+            first,
             readings,
-            to_coefficients: inverse(&nodes),
+            to_coefficients: inverse(&nodes, first),
             coefficients: vec![0.0; grid.height() * degree * padded(grid.width())],
         }
     }
@@ -118,6 +138,11 @@ impl Polynomials {
                 gain[lane] = (gain[lane] + coefficient[lane]) * (x[lane] * scale);
             }
         }
+        for _ in 1..self.first {
+            for lane in 0..LANES {
+                gain[lane] *= x[lane] * scale;
+            }
+        }
         for lane in 0..LANES {
             sum[lane] += gain[lane];
         }
@@ -126,7 +151,7 @@ impl Polynomials {
     /// Sums to which nothing is added yet.
     #[inline(always)]
     pub(super) fn no_sums(&self) -> PowerSums {
-        PowerSums { count: self.degree(), sums: [[0.0; LANES]; MOST] }
+        PowerSums { first: self.first, count: self.degree(), sums: [[0.0; LANES]; MOST] }
     }
 
     /// Adds the gains by the shares `weight`·x for all the x that were added to the sums.
@@ -140,7 +165,7 @@ impl Polynomials {
     ) {
         let (stride, coefficients) = (padded(self.grid.width()), self.coefficients(place));
         let scale = weight / to_f32(self.largest);
-        let mut factor = 1.0;
+        let mut factor = (1..self.first).fold(1.0, |factor, _| factor * scale);
         for (power, sum) in sums.sums[..self.degree()].iter().enumerate() {
             factor *= scale;
             let coefficient = lanes_at(coefficients, power * stride);
@@ -156,6 +181,11 @@ impl PowerSums {
     #[inline(always)]
     pub(super) fn add(&mut self, probability: &Lanes, x: &Lanes) {
         let mut term = *probability;
+        for _ in 1..self.first {
+            for lane in 0..LANES {
+                term[lane] *= x[lane];
+            }
+        }
         for sum in &mut self.sums[..self.count] {
             for lane in 0..LANES {
                 term[lane] *= x[lane];
@@ -172,26 +202,21 @@ fn nodes(degree: usize) -> Vec<f64> {
     (0..degree).map(node).collect()
 }
 
-/// The inverse of the matrix of t_j^q, q = 1, 2, …: from values at the nodes to coefficients.
-fn inverse(nodes: &[f64]) -> Vec<Vec<f64>> {
+/// The inverse of the matrix of t_j^q, q from the `first` power on: from values at the nodes to
+/// coefficients.
+fn inverse(nodes: &[f64], first: usize) -> Vec<Vec<f64>> {
     let n = nodes.len();
-    let power = |t: f64, q: usize| (0..=q).fold(1.0, |power, _| power * t);
+    let power = |t: f64, q: usize| (0..q + first).fold(1.0, |power, _| power * t);
     let matrix = nalgebra::DMatrix::from_fn(n, n, |j, q| power(nodes[j], q));
     let inverse = matrix.try_inverse().unwrap_or_else(|| nalgebra::DMatrix::zeros(n, n));
     (0..n).map(|q| inverse.row(q).iter().copied().collect()).collect()
 }
 
 /// The largest error of an interpolation by so many nodes, in units of the largest gain of its probe.
-fn error(
-    degree: usize,
-    largest: f64,
-    probes: &ProbeHistograms,
-    evidence: &impl Fn(f64) -> Evidence,
-) -> f64 {
-    let gains = |t: f64| probes.gains(&evidence(t * largest));
+fn error(degree: usize, first: usize, gains: impl Fn(f64) -> Vec<f64>) -> f64 {
     let nodes = nodes(degree);
     let (inverse, at_nodes) =
-        (inverse(&nodes), nodes.iter().map(|t| gains(*t)).collect::<Vec<_>>());
+        (inverse(&nodes, first), nodes.iter().map(|t| gains(*t)).collect::<Vec<_>>());
     let most: Vec<f64> = (0..=8)
         .map(|i| gains(f64::from(i) / 8.0))
         .fold(vec![1e-12; at_nodes[0].len()], |most, gains| {
@@ -204,7 +229,8 @@ fn error(
         let value = |probe: usize| {
             let coefficient =
                 |q: usize| inverse[q].iter().zip(&at_nodes).map(|(w, g)| w * g[probe]).sum::<f64>();
-            (0..degree).rev().fold(0.0, |value, q| (value + coefficient(q)) * t)
+            let value = (0..degree).rev().fold(0.0, |value, q| (value + coefficient(q)) * t);
+            (1..first).fold(value, |value, _| value * t)
         };
         let off = |(probe, exact): (usize, &f64)| {
             (value(probe) - exact).abs() / (most[probe] + 0.05 * overall)
