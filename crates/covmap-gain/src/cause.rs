@@ -37,7 +37,7 @@ use causes::GroupCauses;
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
 use covmap_model::{CauseParameters, ModelParameters, SensorModel, gaussian, opaque};
-use ends::AtEnd;
+use ends::{AtEnd, Kernel};
 use polynomials::Polynomials;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -52,10 +52,10 @@ pub(crate) struct Cause {
     grid: Grid,
     beams: Vec<CauseBeam>,
     at_end: AtEnd,
-    /// G of every cell, over g.
-    front: Polynomials,
-    /// B of every cell, over s.
-    behind: Polynomials,
+    /// G of every cell, over g; `None` where it is evaluated for every outcome.
+    front: Option<Polynomials>,
+    /// B of every cell, over s; `None` likewise.
+    behind: Option<Polynomials>,
     /// Bordered: E\[c\]^p.
     surface: Vec<f32>,
     /// Bordered: 1 − o.
@@ -111,8 +111,9 @@ impl Cause {
 
     /// Takes over blocks of cells that changed, given in ascending order.
     pub(crate) fn update(&mut self, arch: Arch, belief: &Belief, changed: &[usize]) {
-        self.front.update(arch, belief, changed);
-        self.behind.update(arch, belief, changed);
+        for polynomials in [&mut self.front, &mut self.behind].into_iter().flatten() {
+            polynomials.update(arch, belief, changed);
+        }
         let p = &self.parameters;
         let (width, per_row) = (self.grid.width(), groups_per_row(&self.grid));
         let unknown = to_f32(libm::pow(p.unknown_coverage, p.sharpness));
@@ -201,36 +202,72 @@ impl GainsOfRow<'_> {
         probability: &Lanes,
         x: usize,
     ) {
+        let at_end = &self.cause.at_end;
         let mut sum = [0.0; LANES];
-        for (cell, kernel) in
-            beam.cells[end.front..end.ended].iter().zip(&beam.kernels[end.first..])
-        {
+        for (cell, near) in beam.cells[end.front..end.ended].iter().zip(&beam.near[end.first..]) {
             let Some((y, x)) = self.place(cell, x) else { continue };
             let prior = self.belief.prior_at(y, x);
-            self.cause.at_end.add(&mut sum, &prior, kernel, causes.ended(cell), &causes.any);
+            let kernel = Kernel { ended: &near.ended, weight: 1.0, free: near.free };
+            at_end.add(&mut sum, &prior, kernel, causes.ended(cell), &causes.any);
         }
+        let kernel = Kernel { ended: &at_end.behind, weight: beam.behind_weight, free: 0.0 };
         for cell in &beam.cells[end.ended..end.reach] {
             let Some((y, x)) = self.place(cell, x) else { continue };
-            self.cause.behind.add(&mut sum, (y, x), causes.ended(cell), beam.behind_weight);
+            if let Some(behind) = &self.cause.behind {
+                behind.add(&mut sum, (y, x), causes.ended(cell), beam.behind_weight);
+            } else {
+                let prior = self.belief.prior_at(y, x);
+                at_end.add(&mut sum, &prior, kernel, causes.ended(cell), &causes.any);
+            }
         }
         for lane in 0..LANES {
             gain[lane] += probability[lane] * sum[lane];
         }
     }
 
-    /// Adds the gains of the cells in front of the ends of all outcomes, from the farthest inwards.
+    /// Adds the gains of the cells in front of the ends of all outcomes.
     #[inline(always)]
     fn add_front(&self, gain: &mut Lanes, beam: &CauseBeam, fronts: &mut [Front], x: usize) {
+        match &self.cause.front {
+            Some(polynomials) => self.add_front_sums(gain, (beam, polynomials), fronts, x),
+            None => fronts.iter().for_each(|front| self.add_each_front(gain, beam, front, x)),
+        }
+    }
+
+    /// From the farthest cell inwards, each for all outcomes at once.
+    #[inline(always)]
+    fn add_front_sums(
+        &self,
+        gain: &mut Lanes,
+        (beam, polynomials): (&CauseBeam, &Polynomials),
+        fronts: &mut [Front],
+        x: usize,
+    ) {
         fronts.sort_by_key(|front| std::cmp::Reverse(front.cells));
-        let mut sums = self.cause.front.no_sums();
+        let mut sums = polynomials.no_sums();
         for i in 0..fronts.len() {
             let Front { cells, probability, any } = &fronts[i];
             sums.add(probability, any);
             let next = fronts.get(i + 1).map_or(0, |next| next.cells);
             for cell in beam.cells[next..*cells].iter().filter(|cell| cell.free > 0.0) {
                 let Some(place) = self.place(cell, x) else { continue };
-                self.cause.front.add_sums(gain, place, &sums, cell.free);
+                polynomials.add_sums(gain, place, &sums, cell.free);
             }
+        }
+    }
+
+    /// Cell by cell for one outcome.
+    #[inline(always)]
+    fn add_each_front(&self, gain: &mut Lanes, beam: &CauseBeam, front: &Front, x: usize) {
+        let (at_end, mut sum) = (&self.cause.at_end, [0.0; LANES]);
+        for cell in beam.cells[..front.cells].iter().filter(|cell| cell.free > 0.0) {
+            let Some((y, x)) = self.place(cell, x) else { continue };
+            let prior = self.belief.prior_at(y, x);
+            let kernel = Kernel { ended: &at_end.behind, weight: 0.0, free: cell.free };
+            at_end.add(&mut sum, &prior, kernel, &[0.0; LANES], &front.any);
+        }
+        for lane in 0..LANES {
+            gain[lane] += front.probability[lane] * sum[lane];
         }
     }
 

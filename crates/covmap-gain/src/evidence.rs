@@ -91,8 +91,8 @@ impl ExcessEvidence {
             }
         }
         let mut gain = gains(&sum, &above);
-        for lane in 0..LANES {
-            gain[lane] *= prior.changeable[lane];
+        for (gain, changeable) in gain.iter_mut().zip(prior.changeable) {
+            *gain *= changeable;
         }
         gain
     }

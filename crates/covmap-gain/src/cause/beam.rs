@@ -29,13 +29,13 @@ pub(super) struct End {
     pub(super) near: usize,
     /// and up to here they are behind it.
     pub(super) reach: usize,
-    /// Where the kernels of the cells from `front` on begin.
+    /// Where those from `front` on begin among the beam's `near`.
     pub(super) first: usize,
 }
 
-/// What an echo may say of a cell at its end.
+/// A cell as an echo may have ended in it.
 #[derive(Debug, Clone)]
-pub(super) struct Kernel {
+pub(super) struct NearEnd {
     /// w(δ)^p.
     pub(super) nearness: f32,
     /// f(d^l, θ) if the cell's centre is before the end, else 0.
@@ -50,7 +50,7 @@ pub(super) struct CauseBeam {
     pub(super) cells: Vec<CauseCell>,
     /// By the outcome's index.
     pub(super) ends: Vec<End>,
-    pub(super) kernels: Vec<Kernel>,
+    pub(super) near: Vec<NearEnd>,
     /// The first so many cells are passed if there is no echo.
     pub(super) no_echo: usize,
     /// b.
@@ -72,7 +72,7 @@ impl CauseBeam {
             bearing: parameters.bearing(c.across),
             free: to_f32(parameters.passed(c.met())),
         };
-        let mut kernels = Vec::new();
+        let mut all_near = Vec::new();
         let end = |(k, range): (usize, &f64)| {
             let delta = |c: &crate::StencilCell| c.cell_distance - range;
             let nearness = |c: &crate::StencilCell| parameters.nearness(resolution, delta(c));
@@ -82,14 +82,14 @@ impl CauseBeam {
             let front = up_to(&|c| delta(c) < 0.0 && nearness(c) <= 0.0);
             let ended = up_to(&|c| delta(c) <= 0.5 * resolution);
             let near = up_to(&|c| delta(c) < 0.0 || nearness(c) > 0.0);
-            let first = kernels.len();
+            let first = all_near.len();
             for (i, c) in beam.cells.iter().enumerate().take(near).skip(front) {
                 let role = parameters.role(resolution, c.met(), Outcome::Echo(*range));
                 let mut ended_in = vec![0.0; if i < ended { bins } else { 0 }];
                 if i < ended {
                     gaussian(role.mu, role.sigma, &mut ended_in);
                 }
-                kernels.push(Kernel {
+                all_near.push(NearEnd {
                     nearness: to_f32(libm::pow(nearness(c), parameters.sharpness)),
                     free: to_f32(role.free),
                     ended: ended_in.into_iter().map(to_f32).collect(),
@@ -100,7 +100,7 @@ impl CauseBeam {
         Self {
             ends: stencil.ranges.iter().enumerate().map(end).collect(),
             cells: beam.cells.iter().map(cell).collect(),
-            kernels,
+            near: all_near,
             no_echo: beam.no_echo_reach,
             behind_weight: to_f32(parameters.behind_weight),
         }

@@ -76,11 +76,11 @@ impl<'a> GroupCauses<'a> {
         let bearings = self.parameters.bearings;
         let ended = &mut self.ended[..bearings];
         ended.fill([0.0; LANES]);
-        let cells = beam.cells[end.front..end.near].iter().zip(&beam.kernels[end.first..]);
-        for (cell, kernel) in cells {
+        let cells = beam.cells[end.front..end.near].iter().zip(&beam.near[end.first..]);
+        for (cell, near) in cells {
             let (surface, likeliest) = (at(surface, here, cell), &mut ended[cell.bearing]);
             for lane in 0..LANES {
-                let surface = kernel.nearness * surface[lane];
+                let surface = near.nearness * surface[lane];
                 likeliest[lane] = if surface > likeliest[lane] { surface } else { likeliest[lane] };
             }
         }

@@ -45,13 +45,15 @@ pub(super) struct PowerSums {
 }
 
 impl Polynomials {
-    /// Of shares up to the `largest`; `evidence` is what a share says.
+    /// Of shares up to the `largest`; `evidence` is what a share says. `None` if the polynomials
+    /// would need too many terms: for shares near to 1, or for kernels that are narrow among many
+    /// bins.
     pub(super) fn new(
         grid: Grid,
         gain: InformationGain,
         largest: f64,
         evidence: impl Fn(f64) -> Evidence,
-    ) -> Self {
+    ) -> Option<Self> {
         let largest = largest.max(1e-9);
         let probes = ProbeHistograms::new(&evidence(largest));
         let first = match gain {
@@ -65,17 +67,17 @@ impl Polynomials {
             }
         };
         let fits = |degree: &usize| error(*degree, first, gains) <= TOLERANCE;
-        let degree = (2..MOST).find(fits).unwrap_or(MOST);
+        let degree = (2..=MOST).find(fits)?;
         let nodes = nodes(degree);
         let readings = nodes.iter().map(|t| evidence(t * largest).excess()).collect();
-        Self {
+        Some(Self {
             grid,
             largest,
             first,
             readings,
             to_coefficients: inverse(&nodes, first),
             coefficients: vec![0.0; grid.height() * degree * padded(grid.width())],
-        }
+        })
     }
 
     /// About how many bytes this takes.
