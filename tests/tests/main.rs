@@ -4,6 +4,7 @@
 mod architecture;
 mod decisions;
 mod docs;
+mod fitting;
 mod golden;
 mod shipped_files;
 mod turned_buildings;

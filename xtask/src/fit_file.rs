@@ -7,11 +7,11 @@ use crate::recorded::Recorded;
 use crate::world_file;
 use anyhow::{Result, bail};
 use covmap_explore::{Config, Limits, Mission, SimulatedRobot, Truth, explore};
-use covmap_fit::{Axis, Example, Weighting};
+use covmap_fit::{Axis, BodyRecord, Example, Weighting};
 use covmap_io::read_ron;
 use covmap_plan::Strategy;
 use covmap_sonar::SonarRing;
-use covmap_world::World;
+use covmap_world::{Surface, World};
 use rayon::prelude::*;
 use serde::Deserialize;
 use std::ops::ControlFlow;
@@ -26,7 +26,7 @@ const MOST_SCANS: usize = 1_000_000;
 pub(crate) struct FitFile {
     /// Robot, sonar, the model to begin with, and the planner.
     pub(crate) config: PathBuf,
-    /// The side of a cell \[m\].
+    /// The side of a cell where an example does not say another \[m\].
     pub(crate) resolution: f64,
     /// Seed of the starts.
     pub(crate) seed: u64,
@@ -57,16 +57,21 @@ pub(crate) enum Source {
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Simulated {
-    /// The scenario.
+    /// The scenario, or a map of map_server.
     pub(crate) scenario: PathBuf,
+    /// The side of a cell \[m\]; without it that of the file.
+    pub(crate) resolution: Option<f64>,
+    /// The surface of everything in the world; without it what the scenario says, and outside of
+    /// it the configuration.
+    pub(crate) surface: Option<Surface>,
     /// By how much it is turned \[rad\].
     pub(crate) turn: f64,
     /// By how much it is shifted \[m\].
     pub(crate) shift: (f64, f64),
     /// Who explores it.
     pub(crate) strategy: Strategy,
-    /// How many scans.
-    pub(crate) scans: usize,
+    /// How many scans; without it as many as it takes until the certificate.
+    pub(crate) scans: Option<usize>,
     /// Seed of the noise.
     pub(crate) seed: u64,
 }
@@ -146,22 +151,37 @@ impl Source {
 impl Simulated {
     /// The world and the mission in it.
     fn task(&self, path: &Path, (config, name): (&Config, &Path)) -> Result<(World, Mission)> {
-        if !(1..=MOST_SCANS).contains(&self.scans) {
-            bail!("{}: scans: {} must lie in 1..={MOST_SCANS}", path.display(), self.scans);
+        if let Some(scans) = self.scans.filter(|scans| !(1..=MOST_SCANS).contains(scans)) {
+            bail!("{}: scans: {scans} must lie in 1..={MOST_SCANS}", path.display());
         }
+        let world = self.world(path, config.sonar.surface)?;
         let file = beside(path, &self.scenario);
+        let mut config = config.clone();
+        config.planner.strategy = self.strategy;
+        config.resolution = self.resolution.unwrap_or(config.resolution);
+        let limits = Limits { max_scans: self.scans, ..Limits::default() };
+        let mission = input::mission((&world, &file), (&config, name), None, limits)?;
+        Ok((world, mission))
+    }
+
+    /// The world; what no file says about surfaces is `surface`.
+    fn world(&self, path: &Path, surface: Surface) -> Result<World> {
         let moves = [self.turn, self.shift.0, self.shift.1];
         if !moves.iter().all(|v| v.is_finite()) || self.shift.0 < 0.0 || self.shift.1 < 0.0 {
             bail!("{}: turn and shift must be finite, the shift not negative", path.display());
         }
+        let file = beside(path, &self.scenario);
+        if !file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {
+            if moves.iter().any(|v| v.abs() > 0.0) {
+                bail!("{}: only scenarios can be turned and shifted", file.display());
+            }
+            return input::world(&file, self.surface.unwrap_or(surface));
+        }
         let scenario = world_file::scenario(&file)?;
-        let surface = config.sonar.surface;
         let world = input::moved(&scenario, self.turn, self.shift, (&file, surface))?;
-        let mut config = config.clone();
-        config.planner.strategy = self.strategy;
-        let limits = Limits { max_scans: Some(self.scans), ..Limits::default() };
-        let mission = input::mission((&world, &file), (&config, name), None, limits)?;
-        Ok((world, mission))
+        let Some(surface) = self.surface else { return Ok(world) };
+        let placed = input::placed(&scenario, self.turn, self.shift);
+        World::from_scenario(&placed.with_surface(surface), surface).map_err(about(&file))
     }
 
     /// Lets the robot explore, and takes what it measured with the truth.
@@ -173,17 +193,32 @@ impl Simulated {
     ) -> Result<Example> {
         let (world, mission) = self.task(path, config)?;
         let mut robot = SimulatedRobot::new(&world, &mission.config, self.seed)?;
-        let run = explore(&mission, &mut robot, &mut |_, _| watch())?;
+        let run = explore(&mission, &mut robot, &mut |_, view| match view.scans {
+            MOST_SCANS.. => ControlFlow::Break(()),
+            _ => watch(),
+        })?;
         let truth = Truth::new(&world, &mission);
-        let scored = truth.scored_cells(&world, &mission, &run);
+        let measured = truth.measured_cells(&run.map);
         let coverage = |cell| truth.coverage.get(cell).copied().unwrap_or(1.0);
         Ok(Example {
-            name: format!("{}, {}, seed {}", world.name(), self.strategy, self.seed),
+            name: self.name(&world, &mission),
             ring: ring(&mission)?,
             scans: run.scans,
+            body: BodyRecord { radius: mission.config.robot.radius, events: run.body },
             grid: mission.grid,
-            truth: scored.into_iter().map(|cell| (cell, coverage(cell))).collect(),
+            truth: measured.into_iter().map(|cell| (cell, coverage(cell))).collect(),
         })
+    }
+
+    fn name(&self, world: &World, mission: &Mission) -> String {
+        let surface = match self.surface {
+            None => "",
+            Some(Surface::Rough) => ", rough",
+            Some(Surface::Smooth) => ", smooth",
+        };
+        let resolution = mission.config.resolution;
+        let Self { strategy, seed, .. } = self;
+        format!("{}{surface}, {strategy}, r = {resolution} m, seed {seed}", world.name())
     }
 }
 

@@ -10,6 +10,7 @@ use covmap_model::SensorModel;
 use covmap_plan::{Planner, PlannerError};
 use covmap_world::{Scenario, Surface, World};
 use nalgebra::{Isometry2, Point2, Vector2};
+use std::borrow::Cow;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
@@ -74,11 +75,19 @@ pub(crate) fn moved(
 ) -> Result<World> {
     // What is wrong with the scenario is said in its own coordinates.
     let world = World::from_scenario(scenario, surface).map_err(about(file))?;
+    match placed(scenario, turn, shift) {
+        Cow::Borrowed(_) => Ok(world),
+        Cow::Owned(moved) => World::from_scenario(&moved, surface).map_err(about(file)),
+    }
+}
+
+/// A scenario turned \[rad\] and shifted \[m\]: as it is, if both are 0.
+pub(crate) fn placed(scenario: &Scenario, turn: f64, shift: (f64, f64)) -> Cow<'_, Scenario> {
     let shift = Vector2::new(shift.0, shift.1);
     if turn == 0.0 && shift == Vector2::zeros() {
-        return Ok(world);
+        return Cow::Borrowed(scenario);
     }
-    World::from_scenario(&scenario.moved(turn, shift), surface).map_err(about(file))
+    Cow::Owned(scenario.moved(turn, shift))
 }
 
 /// Checks all sections of a configuration, and that its tables will not be absurdly large.

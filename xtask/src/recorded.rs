@@ -7,7 +7,7 @@ use crate::memory;
 use anyhow::{Result, bail};
 use covmap::{CoverageMap, Raster};
 use covmap_explore::Config;
-use covmap_fit::Example;
+use covmap_fit::{BodyRecord, Example};
 use covmap_io::log::{Account, LogOptions, LogReader, Sensor};
 use covmap_io::read_ron;
 use covmap_model::integrate_body;
@@ -104,7 +104,7 @@ impl Recorded {
 
     /// The sonar's scans, and the surveyed coverage of the cells that count: seen by the laser;
     /// in sight of the robot within the usable range, or the first solid behind them; not
-    /// under its body.
+    /// under its body, which is evidence where the scans were made.
     pub(crate) fn example(&self, path: &Path, config: &Config) -> Result<Example> {
         let (log, truth) = (beside(path, &self.log), beside(path, &self.truth));
         let poses = (!self.poses.as_os_str().is_empty()).then(|| beside(path, &self.poses));
@@ -131,7 +131,9 @@ impl Recorded {
         let cells = grid.cells().filter(|cell| counts.get(*cell) == Some(&true));
         let with_truth = |cell| (cell, coverage.get(cell).copied().unwrap_or(0.0));
         let name = log.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Example { name, ring, scans, grid, truth: cells.map(with_truth).collect() })
+        let body = BodyRecord::standing(config.robot.radius, &scans);
+        let truth = cells.map(with_truth).collect();
+        Ok(Example { name, ring, scans, body, grid, truth })
     }
 
     /// Standing still is no evidence.

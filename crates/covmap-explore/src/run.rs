@@ -1,8 +1,8 @@
 //! The loop.
 
 use crate::{Event, Mission, MissionError, Robot, standing_place};
-use covmap::{Cell, CoverageMap, Raster};
-use covmap_model::{Body, SensorModel, integrate};
+use covmap::{Cell, Change, CoverageMap, Raster};
+use covmap_model::{Body, BodyEvent, SensorModel, integrate};
 use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Reach};
 use covmap_sonar::{Range, Scan};
 use covmap_world::Drive;
@@ -41,6 +41,8 @@ pub struct Run {
     pub reach: Raster<Reach>,
     /// Every scan, in order.
     pub scans: Vec<Scan>,
+    /// What the body told of the map, in order, each with the number of scans before it.
+    pub body: Vec<(usize, BodyEvent)>,
     /// The corners of the driven path \[m\].
     pub trajectory: Vec<Point2<f64>>,
     /// Length of the path \[m\].
@@ -114,6 +116,7 @@ struct Explorer<'a, R, H> {
     /// How far the robot drove since it last measured [m].
     since_scan: f64,
     scans: Vec<Scan>,
+    happened: Vec<(usize, BodyEvent)>,
     trajectory: Vec<Point2<f64>>,
     path_length: f64,
     decisions: usize,
@@ -154,6 +157,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
             cramped: false,
             since_scan: 0.0,
             scans: Vec::new(),
+            happened: Vec::new(),
             trajectory: vec![at],
             path_length: 0.0,
             decisions: 0,
@@ -290,24 +294,26 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
     }
 
     fn body_was_between(&mut self, from: Point2<f64>, to: Point2<f64>) {
-        let changes = if self.believes_its_body() {
-            self.body.moved(&mut self.map, from, to)
-        } else {
-            Vec::new()
-        };
-        self.planner.body_moved(&self.map, from, to, &changes);
+        let changes = self.believe_the_body(BodyEvent::Moved { from, to });
+        self.planner.body_moved(&self.map, from, to, &changes.unwrap_or_default());
     }
 
     /// The body stopped at something on its way to a goal.
     fn body_touched(&mut self, at: Point2<f64>, goal: Point2<f64>) {
-        if self.believes_its_body() {
-            let changes = self.body.touched(&mut self.map, at, goal - at);
+        if let Some(changes) =
+            self.believe_the_body(BodyEvent::Touched { at, direction: goal - at })
+        {
             self.planner.body_moved(&self.map, at, at, &changes);
         }
     }
 
-    fn believes_its_body(&self) -> bool {
-        self.mission.config.planner.body_evidence == BodyEvidence::Belief
+    /// What changed in the map by what happened to the body; `None` if that is no evidence.
+    fn believe_the_body(&mut self, event: BodyEvent) -> Option<Vec<Change>> {
+        let believes = self.mission.config.planner.body_evidence == BodyEvidence::Belief;
+        believes.then(|| {
+            self.happened.push((self.scans.len(), event));
+            self.body.happened(&mut self.map, &event)
+        })
     }
 
     fn report(&mut self, event: Event) -> ControlFlow<()> {
@@ -329,6 +335,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
             counts: self.planner.counted_scans(),
             map: self.map,
             scans: self.scans,
+            body: self.happened,
             trajectory: self.trajectory,
             path_length: self.path_length,
             decisions: self.decisions,

@@ -1,7 +1,7 @@
 //! A map against the truth.
 
 use crate::{Mission, Run};
-use covmap::{Cell, CoverageMap, LIKELIHOOD_FLOOR, Raster, Steps, log_likelihood};
+use covmap::{Cell, CoverageMap, LIKELIHOOD_FLOOR, Raster, Steps, is_scored, log_likelihood};
 use covmap_world::World;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
@@ -78,6 +78,16 @@ impl Truth {
         let counts = |i: usize| seen.in_sight[i] || seen.first_solid[i];
         let cells = (0..grid.len()).filter(|i| counts(*i)).map(|i| grid.cell(i));
         cells.filter(|cell| !run.map.is_pinned(*cell)).collect()
+    }
+
+    /// The cells in which a map has something to prove: those that were measured, and not
+    /// pinned by the body, without the solid ones that are deeper than the first layer
+    /// ([`is_scored`]).
+    pub fn measured_cells(&self, map: &CoverageMap) -> Vec<Cell> {
+        let counts = |cell: &Cell| {
+            map.is_known(*cell) && !map.is_pinned(*cell) && is_scored(&self.coverage, *cell)
+        };
+        map.grid().cells().filter(counts).collect()
     }
 
     /// Whether a map knows a cell to be free: with a mode of at most .2.

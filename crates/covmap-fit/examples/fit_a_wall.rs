@@ -2,7 +2,9 @@
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
 use covmap::Grid;
-use covmap_fit::{Axis, Example, FitSettings, Parameter, SearchSettings, Weighting, fit, score};
+use covmap_fit::{
+    Axis, BodyRecord, Example, FitSettings, Parameter, SearchSettings, Weighting, fit, score,
+};
 use covmap_model::ModelParameters;
 use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -36,7 +38,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let covered = |cell| ((grid.center(cell).x + 0.05 - WALL) / 0.1).clamp(0.0, 1.0);
     let truth = grid.cells().filter(|cell| near(*cell)).map(|cell| (cell, covered(cell))).collect();
-    let examples = [Example { name: "wall".into(), ring, scans, grid, truth }];
+    let body = BodyRecord::default();
+    let examples = [Example { name: "wall".into(), ring, scans, body, grid, truth }];
 
     let begin = ModelParameters::by_hand();
     let settings = FitSettings {

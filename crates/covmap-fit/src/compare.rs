@@ -6,8 +6,8 @@ mod calibration;
 pub use blocks::trajectory_blocks;
 pub use calibration::{CALIBRATION_LEVELS, CalibrationTable};
 
-use crate::example::{measures, truths};
-use crate::{ByClass, Class, Example, Method, Weighting};
+use crate::example::truths;
+use crate::{ByClass, Class, ClassScore, Example, Method, Weighting};
 use blocks::{interval, resamples};
 use covmap::randomised_pit;
 use covmap_model::ModelError;
@@ -236,8 +236,9 @@ impl TestCells {
             let p = output(posterior);
             let pit = randomised_pit(p, cell.truth, cell.chance.0, cell.chance.1);
             let central = |level: f64| f64::from(u8::from((pit - 0.5).abs() <= 0.5 * level));
-            let [likelihood, crps, error] = measures(p, cell.truth);
-            let measures = [likelihood, crps, error, central(0.5), central(0.9)];
+            let score = ClassScore::of_cell(p, cell.truth);
+            let measures =
+                [score.log_likelihood, score.crps, score.error, central(0.5), central(0.9)];
             let block = &mut sums[cell.block];
             block.of_class_mut(Class::of(cell.truth)).add(measures);
             block.all.add(measures);

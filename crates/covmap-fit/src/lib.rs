@@ -19,6 +19,7 @@
 
 mod axis;
 mod class;
+mod class_score;
 mod compare;
 mod example;
 mod fitting;
@@ -28,10 +29,11 @@ mod tuning;
 
 pub use axis::{Axis, AxisError, Parameter};
 pub use class::ByClass;
+pub use class_score::{ClassScore, ExampleScore};
 pub use compare::{CALIBRATION_LEVELS, CalibrationTable, ClassComparison, ComparisonSettings};
 pub use compare::{Contender, Difference, Estimate, Row, compare, table, trajectory_blocks};
 pub use covmap::Class;
-pub use example::{ClassScore, Example, ExampleScore};
+pub use example::{BodyRecord, Example};
 pub use fitting::{Evaluation, FitError, FitSettings, Fitted, Profile, Weighting, fit, score};
 pub use method::{BetaCounting, Crm, LogOdds, Method, Update};
 pub use search::{SearchSettings, Step, maximise};

@@ -74,7 +74,8 @@ pub enum Update {
 
 /// A method: how the scans of an example become posteriors of its cells.
 ///
-/// All methods see the same scans and cells, by the same `footprint`, `usable_range`,
+/// All methods see the same scans and cells, and those whose cells depend on others the same body
+/// evidence, by the same `footprint`, `usable_range`,
 /// `no_echo.range` and `behind` of `model`. Of the rest of `model` every method uses `bins`,
 /// the coverage map uses all, and the forward update the tempering.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -144,7 +145,7 @@ impl Method {
                 cells.map(read).collect()
             }
             Update::Crm(crm) => {
-                let map = crm.map(&model, example.grid, &example.scans)?;
+                let map = example.map_by(bins, |map, scan| crm.integrate(&model, map, scan))?;
                 cells.map(|cell| of_map(&map, cell)).collect()
             }
             Update::LogOdds(odds) => {

@@ -4,9 +4,9 @@
 
 use covmap::{Cell, Grid};
 use covmap_fit::{
-    Axis, BetaCounting, ComparisonSettings, Contender, Crm, Estimate, Example, LogOdds, Method,
-    MethodParameter, Row, TuneError, TuneSettings, Update, Weighting, compare, trajectory_blocks,
-    tune,
+    Axis, BetaCounting, BodyRecord, ComparisonSettings, Contender, Crm, Estimate, Example, LogOdds,
+    Method, MethodParameter, Row, TuneError, TuneSettings, Update, Weighting, compare,
+    trajectory_blocks, tune,
 };
 use covmap_model::ModelParameters;
 use covmap_sonar::{Range, Scan, SonarRing};
@@ -63,7 +63,8 @@ fn example(size: (f64, f64), seed: u64) -> Example {
     };
     let near = |cell: &Cell| (-1..=1).any(|x| (-1..=1).any(|y| covered(cell.offset(x, y)) < 1.0));
     let truth = grid.cells().filter(near).map(|cell| (cell, covered(cell))).collect();
-    Example { name: "room".to_owned(), ring, scans, grid, truth }
+    let body = BodyRecord::standing(0.27, &scans);
+    Example { name: "room".to_owned(), ring, scans, body, grid, truth }
 }
 
 fn methods() -> Vec<Contender> {
@@ -220,6 +221,7 @@ fn a_hostile_example() -> impl Strategy<Value = Example> {
     parts.prop_map(|(scans, truth)| Example {
         name: "hostile".to_owned(),
         ring: SonarRing::b21r(),
+        body: BodyRecord::standing(0.27, &scans),
         scans,
         grid: Grid::new(Point2::origin(), 0.1, 20, 15).expect("a grid"),
         truth,

@@ -3,7 +3,9 @@
 #![allow(clippy::unwrap_used, reason = "a test that fails must fail")]
 
 use covmap::{Grid, bin_coverage};
-use covmap_fit::{Axis, Example, FitSettings, Parameter, SearchSettings, Weighting, fit};
+use covmap_fit::{
+    Axis, BodyRecord, Example, FitSettings, Parameter, SearchSettings, Weighting, fit,
+};
 use covmap_model::ModelParameters;
 use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
@@ -32,6 +34,7 @@ fn drawn_example(known: &ModelParameters, uniform: &mut impl FnMut() -> f64) -> 
         name: "drawn".into(),
         ring: SonarRing::b21r(),
         scans: vec![scan.clone(), scan],
+        body: BodyRecord::default(),
         grid,
         truth: Vec::new(),
     };

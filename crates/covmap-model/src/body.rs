@@ -1,6 +1,9 @@
 //! The body as a contact sensor: where it was nothing is; where it stopped something is.
 
+mod event;
 mod front;
+
+pub use event::BodyEvent;
 
 use crate::integrate::{integrate_body, is_under_body, merge};
 use covmap::{Cell, Change, CoverageMap, Grid, MAX_BINS, PROBABILITY_FLOOR, bin_coverage};

@@ -36,7 +36,7 @@ mod registers;
 mod scan_counts;
 mod sensor_model;
 
-pub use body::Body;
+pub use body::{Body, BodyEvent};
 pub use cause::{Causes, Clues, Met, Role, gaussian, opaque};
 pub use footprint::{Footprint, FootprintCell, FootprintError, FootprintRule};
 pub use integrate::{

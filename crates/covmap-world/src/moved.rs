@@ -40,6 +40,17 @@ impl Scenario {
     }
 }
 
+impl Scenario {
+    /// The scenario with the same surface on every obstacle. How the outside answers a world is
+    /// told when it is made.
+    #[must_use]
+    pub fn with_surface(&self, surface: Surface) -> Self {
+        let mut scenario = self.clone();
+        scenario.obstacles.iter_mut().for_each(|obstacle| obstacle.surface = surface);
+        scenario
+    }
+}
+
 impl Shape {
     /// The shape turned by `angle` \[rad\], with its points where `place` puts them \[m\].
     #[must_use]
@@ -114,6 +125,24 @@ mod tests {
     /// Shifts of every size, most of them thinner than the thinnest rectangle may be.
     fn shift() -> impl Strategy<Value = f64> {
         prop_oneof![0.0..0.1, (-9.0..-1.0f64).prop_map(libm::exp10)]
+    }
+
+    #[test]
+    fn a_surface_is_that_of_every_obstacle_also_of_what_turning_adds() {
+        let scenario = Scenario {
+            name: "room".into(),
+            extent: Extent { width: 3.0, height: 2.0 },
+            start: None,
+            obstacles: vec![Obstacle {
+                shape: Shape::Circle { center: (1.0, 1.0), radius: 0.2 },
+                surface: Surface::Rough,
+            }],
+        };
+        let moved = scenario.moved(0.3, Vector2::zeros());
+        let smooth = moved.with_surface(Surface::Smooth);
+        assert!(smooth.obstacles.len() > 1 && smooth.obstacles.len() == moved.obstacles.len());
+        assert!(smooth.obstacles.iter().all(|obstacle| obstacle.surface == Surface::Smooth));
+        assert_eq!(smooth.with_surface(Surface::Rough), moved);
     }
 
     proptest! {

@@ -53,7 +53,7 @@ fn entropy(probabilities: &[f64]) -> f64 {
 }
 
 /// The first bin with the largest probability: a tie is the lower coverage.
-pub(crate) fn mode_bin<T: PartialOrd>(probabilities: &[T]) -> usize {
+pub fn mode_bin<T: PartialOrd>(probabilities: &[T]) -> usize {
     let mut best = 0;
     for (bin, p) in probabilities.iter().enumerate() {
         if *p > probabilities[best] {

@@ -31,14 +31,21 @@ mod histogram;
 pub mod lanes;
 mod proper_score;
 mod raster;
+mod scored;
 mod short;
 mod steps;
 
 pub use belief_file::BeliefFileError;
 pub use coverage_map::{Change, CoverageMap, EvidenceBlock, MapError};
 pub use grid::{Cell, Grid, GridError, MAX_CELLS};
-pub use histogram::{Histogram, MAX_BINS, MIN_BINS, PROBABILITY_FLOOR, bin_coverage, product};
-pub use proper_score::{Class, LIKELIHOOD_FLOOR, crps, log_likelihood, lower_bin, randomised_pit};
+pub use histogram::{
+    Histogram, MAX_BINS, MIN_BINS, PROBABILITY_FLOOR, bin_coverage, mode_bin, product,
+};
+pub use proper_score::{
+    Class, LIKELIHOOD_FLOOR, central, crps, interval_holds, log_likelihood, lower_bin,
+    randomised_pit,
+};
 pub use raster::Raster;
+pub use scored::is_scored;
 pub use short::short;
 pub use steps::{STEPS, Steps, neighbour, opposite, step_between};

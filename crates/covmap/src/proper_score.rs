@@ -101,6 +101,48 @@ pub fn randomised_pit(probabilities: &[f64], coverage: f64, u: f64, v: f64) -> f
     probabilities[..bin].iter().sum::<f64>() + u * probabilities[bin]
 }
 
+/// The probability, over u and v, that [`randomised_pit`] lies in the central `level` of
+/// \[0, 1\]: `level` in the mean, if truths are drawn from the posteriors, without any draw.
+///
+/// # Panics
+/// Unless there are at least two bins.
+pub fn central(probabilities: &[f64], coverage: f64, level: f64) -> f64 {
+    let (k, t) = lower_bin(coverage, probabilities.len());
+    let (low, high) = (0.5 * (1.0 - level), 0.5 * (1.0 + level));
+    let inside = |bin: usize| {
+        let from: f64 = probabilities[..bin].iter().sum();
+        let (p, to) = (probabilities[bin], from + probabilities[bin]);
+        if p > 0.0 {
+            ((to.min(high) - from.max(low)) / p).clamp(0.0, 1.0)
+        } else {
+            f64::from(u8::from((low..=high).contains(&from)))
+        }
+    };
+    (1.0 - t) * inside(k) + t * inside(k + 1)
+}
+
+/// Whether the central interval of a posterior holds the true coverage: from half a bin below
+/// the first bin at which the cumulated posterior reaches (1 − level)/2 to half a bin above
+/// the first at which it reaches (1 + level)/2. Bins are wide, so that more truths than
+/// `level` are held by a posterior that is right; [`central`] has no such excess.
+///
+/// # Panics
+/// Unless there are at least two bins.
+pub fn interval_holds(probabilities: &[f64], coverage: f64, level: f64) -> bool {
+    let bins = probabilities.len();
+    let first = |level: f64| {
+        let mut sum = 0.0;
+        let reaches = |p: &f64| {
+            sum += p;
+            sum >= level
+        };
+        bin_coverage(probabilities.iter().position(reaches).unwrap_or(bins - 1), bins)
+    };
+    let half_bin = 0.5 * bin_coverage(1, bins) + 1e-9;
+    let (low, high) = (first(0.5 * (1.0 - level)), first(0.5 * (1.0 + level)));
+    (low - half_bin..=high + half_bin).contains(&coverage)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -125,7 +167,50 @@ mod tests {
         assert!((randomised_pit(&sure, 0.2, 0.3, 0.9) - 0.3).abs() < 1e-12);
     }
 
+    #[test]
+    fn what_the_central_interval_holds_by_hand() {
+        // Three bins; the masses lie in [0, .2], [.2, .9] and [.9, 1].
+        let p = [0.2, 0.7, 0.1];
+        // Of [0, .2] the part above .05 is .15; of [.9, 1] that below .95 is .05.
+        assert!((central(&p, 0.0, 0.9) - 0.75).abs() < 1e-12);
+        assert!((central(&p, 0.5, 0.9) - 1.0).abs() < 1e-12);
+        assert!((central(&p, 1.0, 0.9) - 0.5).abs() < 1e-12);
+        // A quarter of the way from the first bin to the second.
+        assert!((central(&p, 0.125, 0.9) - (0.75 * 0.75 + 0.25)).abs() < 1e-12);
+        // Bins without mass stand at an end of the interval, or outside of it.
+        assert!(central(&[1.0, 0.0], 1.0, 0.9) < 1e-12);
+        assert!((central(&[0.5, 0.0, 0.5], 0.5, 0.9) - 1.0).abs() < 1e-12);
+        // The interval reaches from the first bin to the last: .2 ≥ .05, and .9 < .95.
+        assert!(interval_holds(&p, 0.0, 0.9) && interval_holds(&p, 1.0, 0.9));
+        // At one half it is the second bin alone, with half a bin to each side.
+        assert!(interval_holds(&p, 0.25, 0.5) && interval_holds(&p, 0.75, 0.5));
+        assert!(!interval_holds(&p, 0.24, 0.5) && !interval_holds(&p, 0.76, 0.5));
+    }
+
     proptest! {
+        #[test]
+        fn the_central_share_is_that_of_the_randomised_transform(
+            p in posterior(), x in 0.0..1.0f64, level in 0.1..0.95f64
+        ) {
+            let steps = || (0..200).map(|i| (f64::from(i) + 0.5) / 200.0);
+            let (k, t) = lower_bin(x, 11);
+            // v falls below t with probability t: once each, with their weights.
+            let share = |v: f64| {
+                let is_in = |u: f64| (randomised_pit(&p, x, u, v) - 0.5).abs() <= 0.5 * level;
+                steps().filter(|u| is_in(*u)).count() as f64 / 200.0
+            };
+            let drawn = (1.0 - t) * share(0.999_999) + t * share(0.0);
+            prop_assert!((central(&p, x, level) - drawn).abs() < 0.011, "{k} {t} {drawn}");
+        }
+
+        #[test]
+        fn truths_that_are_drawn_from_posteriors_are_central_as_often_as_they_should(
+            p in posterior(), level in 0.1..0.95f64
+        ) {
+            let drawn: f64 = (0..11).map(|k| p[k] * central(&p, bin_coverage(k, 11), level)).sum();
+            prop_assert!((drawn - level).abs() < 1e-9);
+        }
+
         #[test]
         fn the_log_likelihood_is_proper(truth in posterior(), other in posterior()) {
             // Truths drawn from the posterior score best under it.

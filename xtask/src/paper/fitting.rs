@@ -41,7 +41,9 @@ impl Fitting {
             config.resolution = QUICK_SIDE;
             let shorten = |source: &mut Source| {
                 if let Source::Simulated(simulated) = source {
-                    simulated.scans = simulated.scans.min(QUICK_SCANS);
+                    let scans = simulated.scans.unwrap_or(QUICK_SCANS);
+                    simulated.scans = Some(scans.min(QUICK_SCANS));
+                    simulated.resolution = None;
                 }
             };
             file.training.iter_mut().chain(&mut file.held_out).for_each(shorten);

@@ -1,6 +1,6 @@
 //! What a method's output has meant before: its levels, and the truths that came with them.
 
-use crate::example::mean;
+use crate::class_score::mean;
 use covmap::lower_bin;
 use serde::Serialize;
 

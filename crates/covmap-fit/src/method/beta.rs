@@ -164,7 +164,7 @@ fn continued_fraction(a: f64, b: f64, x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::example::mean;
+    use crate::class_score::mean;
     use proptest::prelude::*;
 
     #[test]

@@ -3,7 +3,7 @@
 //! Its maps are only compared: the robot's own belief changes in `covmap-model` alone.
 
 use super::prior_probability;
-use covmap::{Cell, CoverageMap, Grid, bin_coverage};
+use covmap::{Cell, Change, CoverageMap, Grid, bin_coverage};
 use covmap_model::{ModelError, Outcome, SensorModel};
 use covmap_sonar::Scan;
 use serde::{Deserialize, Serialize};
@@ -49,32 +49,25 @@ impl Crm {
         within("crm.spread", self.spread, 0.0, 1.0)
     }
 
-    /// The map after some scans, in their order, which matters: each beam is explained by
-    /// the map as it was before it. A cell that no beam covered stays unknown and uniform.
-    ///
-    /// # Errors
-    /// If the model's number of bins makes no map.
+    /// Integrates a scan into a map: each beam is explained by the map as it was before it, so
+    /// that their order matters. Returns what changed.
     ///
     /// # Panics
-    /// If a scan does not fit the model's ring.
-    pub(crate) fn map(
+    /// If the scan does not fit the model's ring.
+    pub(crate) fn integrate(
         &self,
         model: &SensorModel,
-        grid: Grid,
-        scans: &[Scan],
-    ) -> Result<CoverageMap, ModelError> {
-        let bins = model.parameters().bins;
-        let mut map = CoverageMap::new(grid, bins).map_err(|_| ModelError::Bins(bins))?;
-        let mut rings = Rings::default();
-        for scan in scans {
-            assert_eq!(scan.ranges.len(), model.footprint().beams(), "one reading for each beam");
-            for (beam, range) in scan.ranges.iter().enumerate() {
-                let Some(outcome) = model.outcome(*range) else { continue };
-                rings.gather(model, &grid, scan, beam, outcome);
-                self.update(model, &mut map, &mut rings, outcome);
-            }
+        map: &mut CoverageMap,
+        scan: &Scan,
+    ) -> Vec<Change> {
+        assert_eq!(scan.ranges.len(), model.footprint().beams(), "one reading for each beam");
+        let (mut changes, mut rings) = (Vec::new(), Rings::default());
+        for (beam, range) in scan.ranges.iter().enumerate() {
+            let Some(outcome) = model.outcome(*range) else { continue };
+            rings.gather(model, map.grid(), scan, beam, outcome);
+            changes.extend(self.update(model, map, &mut rings, outcome));
         }
-        Ok(map)
+        changes
     }
 
     /// Multiplies one reading z into the cells of its beam: the sensor cause model of
@@ -99,7 +92,7 @@ impl Crm {
         map: &mut CoverageMap,
         rings: &mut Rings,
         outcome: Outcome,
-    ) {
+    ) -> Vec<Change> {
         let update = &model.parameters().update;
         let tempering = update.product().map_or(1.0, |product| product.tempering);
         let bins = map.bins();
@@ -111,7 +104,7 @@ impl Crm {
             Outcome::Beyond(_) | Outcome::NoEcho => 0.0,
         };
         let background = outlier / model.parameters().usable_range;
-        let mut evidence = vec![0.0; bins];
+        let (mut evidence, mut changes) = (vec![0.0; bins], Vec::new());
         let (mut before, mut survival, mut first) = (0.0, 1.0, 0);
         for (k, keep) in keep.iter().enumerate() {
             let end = first + rings.cells[first..].iter().take_while(|c| c.ring == k).count();
@@ -132,12 +125,13 @@ impl Crm {
                 }
                 let largest = evidence.iter().fold(f64::MIN_POSITIVE, |a, e| a.max(*e));
                 evidence.iter_mut().for_each(|e| *e /= largest);
-                map.multiply(cell.cell, &evidence);
+                changes.extend(map.multiply(cell.cell, &evidence));
             }
             before += survival * (1.0 - keep) * l;
             survival *= keep;
             first = end;
         }
+        changes
     }
 
     /// Fills in how much each cell stops the beam, and returns 1 − q of every ring.
@@ -152,7 +146,7 @@ impl Crm {
         for c in &mut rings.cells {
             let mean = if map.is_known(c.cell) {
                 map.read_posterior(c.cell, &mut posterior);
-                crate::example::mean(&posterior)
+                crate::class_score::mean(&posterior)
             } else {
                 unknown
             };
@@ -250,7 +244,9 @@ mod tests {
         let mut ranges = vec![Range::Missing; 24];
         ranges[0] = range;
         let scan = Scan { pose: Isometry2::identity(), time: 0.0, ranges };
-        Crm::default().map(&model, grid, &vec![scan; times]).unwrap()
+        let mut map = CoverageMap::new(grid, 11).unwrap();
+        (0..times).for_each(|_| drop(Crm::default().integrate(&model, &mut map, &scan)));
+        map
     }
 
     #[test]
