@@ -21,7 +21,7 @@ pub enum OverrideError {
 
 impl Config {
     /// The configuration with another value of one parameter, such as
-    /// `"model.update.Product.no_echo.range"`.
+    /// `"model.update.Cause.no_echo.range"`.
     ///
     /// A variant without fields is a string, `"Off"`; one with fields is a map from its name,
     /// `{"Banded": {"first": 1.0, "closest": 0.5}}`.
@@ -58,7 +58,7 @@ mod tests {
         let set = |path, value: Value| Config::b21r().overridden(path, &value).unwrap();
         assert_eq!(set("resolution", json!(0.15)).resolution, 0.15);
         assert_eq!(
-            set("model.update.Product.no_echo.range", json!(0)).model.update.no_echo_range(),
+            set("model.update.Cause.no_echo.range", json!(0)).model.update.no_echo_range(),
             0.0
         );
         let off = set("planner.body_evidence", json!("Off"));

@@ -281,7 +281,7 @@ mod tests {
         ];
         for (mut parameters, own, foreign) in [
             (ModelParameters::product(), &product[..], &cause[..]),
-            (ModelParameters::by_cause(), &cause, &product),
+            (ModelParameters::b21r(), &cause, &product),
         ] {
             let all = || shared.iter().chain(own);
             for (value, parameter) in (1..).zip(all()) {

@@ -235,7 +235,7 @@ proptest! {
 
     #[test]
     fn the_cached_gain_is_the_literal_one_by_cause_by_default(scans in some_scans()) {
-        let model = ModelParameters { usable_range: 1.5, ..ModelParameters::by_cause() };
+        let model = ModelParameters { usable_range: 1.5, ..ModelParameters::b21r() };
         check(Setting::new(&model, &SonarRing::b21r(), PLAIN), scans)?;
     }
 }

@@ -186,14 +186,9 @@ impl Update {
 }
 
 impl ModelParameters {
-    /// A B21r's sonars: 11 bins, 3 m usable range, and the parameters of `configs/b21r.ron`.
+    /// A B21r's sonars, the default: 11 bins, 3 m usable range, and the update by cause as it was
+    /// fitted to whole explorations of simulated worlds (`configs/b21r.ron`).
     pub fn b21r() -> Self {
-        Self::product()
-    }
-
-    /// A B21r's sonars with the update by cause, as it was fitted to whole explorations of
-    /// simulated worlds.
-    pub fn by_cause() -> Self {
         Self {
             bins: 11,
             usable_range: 3.0,
@@ -204,13 +199,13 @@ impl ModelParameters {
 
     /// The same sonars with Eq. (9), as it was fitted to the first 200 scans of explorations.
     pub fn product() -> Self {
-        Self { update: Update::Product(ProductParameters::fitted()), ..Self::by_cause() }
+        Self { update: Update::Product(ProductParameters::fitted()), ..Self::b21r() }
     }
 
     /// The same sonars with Eq. (9) and parameters that were chosen by hand on small worlds:
     /// each reading says much more, and maps are surer than they ought to be.
     pub fn by_hand() -> Self {
-        Self { update: Update::Product(ProductParameters::by_hand()), ..Self::by_cause() }
+        Self { update: Update::Product(ProductParameters::by_hand()), ..Self::b21r() }
     }
 
     /// These parameters with others of Eq. (9).

@@ -131,7 +131,7 @@ proptest! {
 /// of a room that is not known nothing is ruled out.
 #[test]
 fn a_known_wall_explains_its_echo_and_hides_what_is_behind_it() {
-    let model = SensorModel::new(&ModelParameters::by_cause(), &SonarRing::b21r(), 0.1).unwrap();
+    let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1).unwrap();
     let grid = Grid::new(Point2::new(-2.0, -2.0), 0.1, 60, 40).unwrap();
     let scan = |d: f64| {
         let mut ranges = vec![Range::Missing; 24];

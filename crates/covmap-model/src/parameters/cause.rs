@@ -70,19 +70,19 @@ impl CauseParameters {
     pub fn fitted() -> Self {
         Self {
             bearings: 8,
-            range_tolerance: 0.07,
-            cell_depth: 1.27,
-            unknown_coverage: 0.15,
-            sharpness: 0.356,
-            chance: 2.02,
-            first_echo: 6.0,
-            sigma_in: Linear { base: 0.097, per_cell_distance: 0.091, per_range: 0.0 },
-            behind: 0.31,
-            behind_weight: 0.271,
-            sigma_behind: 0.225,
-            free: FreeSpace { share: 0.377, range: 0.836, width: 0.516, sigma: 0.073 },
-            beyond: 0.3,
-            no_echo: NoEchoShare { range: 0.5, share: 0.2 },
+            range_tolerance: 0.043,
+            cell_depth: 1.3,
+            unknown_coverage: 0.1,
+            sharpness: 0.56,
+            chance: 2.2,
+            first_echo: 4.0,
+            sigma_in: Linear { base: 0.105, per_cell_distance: 0.07, per_range: 0.0 },
+            behind: 0.29,
+            behind_weight: 0.27,
+            sigma_behind: 0.2,
+            free: FreeSpace { share: 0.42, range: 0.75, width: 0.9, sigma: 0.06 },
+            beyond: 0.2,
+            no_echo: NoEchoShare { range: 0.3, share: 0.2 },
         }
     }
 
