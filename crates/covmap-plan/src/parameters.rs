@@ -126,7 +126,7 @@ impl PlannerParameters {
             min_entropy_change: 0.001,
             stall_limit: 5,
             stall_rule: StallRule::Banded { first: 1.0, closest: 0.5 },
-            scan_spacing: 0.3,
+            scan_spacing: 0.35,
             max_counted_scans: 520,
             scope: Scope::Observable,
             traversable_coverage: 0.2,

@@ -70,18 +70,18 @@ impl CauseParameters {
     pub fn fitted() -> Self {
         Self {
             bearings: 8,
-            range_tolerance: 0.043,
+            range_tolerance: 0.044,
             cell_depth: 1.3,
-            unknown_coverage: 0.1,
-            sharpness: 0.56,
-            chance: 2.2,
-            first_echo: 4.0,
-            sigma_in: Linear { base: 0.105, per_cell_distance: 0.07, per_range: 0.0 },
-            behind: 0.29,
+            unknown_coverage: 0.094,
+            sharpness: 1.0,
+            chance: 1.14,
+            first_echo: 4.9,
+            sigma_in: Linear { base: 0.1, per_cell_distance: 0.068, per_range: 0.0 },
+            behind: 0.34,
             behind_weight: 0.27,
-            sigma_behind: 0.2,
-            free: FreeSpace { share: 0.42, range: 0.75, width: 0.9, sigma: 0.06 },
-            beyond: 0.2,
+            sigma_behind: 0.21,
+            free: FreeSpace { share: 0.42, range: 0.64, width: 0.68, sigma: 0.06 },
+            beyond: 0.1,
             no_echo: NoEchoShare { range: 0.3, share: 0.2 },
         }
     }
