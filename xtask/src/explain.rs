@@ -18,8 +18,9 @@ pub(crate) fn run(arguments: &Explain) -> Result<ExitCode> {
     let picture = dir.join(format!("explain-{step}.png"));
     let png = explain_picture::draw(&moment, &trace.header.world, *step).to_png();
     write_file(&picture, &png.map_err(about(&picture))?, force.replace())?;
-    let strategy = &moment.mission.config.planner.strategy;
-    say::line(format!("{}, {strategy}: decision {step}", trace.header.world));
+    let config = &moment.mission.config;
+    let (strategy, update) = (&config.planner.strategy, config.model.update.name());
+    say::line(format!("{}, {strategy}, update {update}: decision {step}", trace.header.world));
     facts(&moment).iter().for_each(|fact| say::line(format!("  {fact}")));
     table(&moment).iter().for_each(say::line);
     say::line(reason(&moment));

@@ -169,7 +169,8 @@ const LEGEND: &str = "  (exhausted: still uncertain, and measuring helps no long
 
 fn report(summary: &Summary, counts: &MapCounts, written: &Path) {
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
-    say::line(format!("{}, {}: {}", summary.world, summary.strategy, in_words(summary.ending)));
+    let Summary { world, strategy, update, .. } = summary;
+    say::line(format!("{world}, {strategy}, update {update}: {}", in_words(summary.ending)));
     say::line(format!(
         "  {} scans, {} decisions, {:.1} m driven, {} bumps, {:.1} s",
         summary.scans, summary.decisions, summary.path_length_m, summary.bumps, summary.seconds

@@ -67,14 +67,14 @@ pub(crate) struct Pictures<'a> {
 impl Pictures<'_> {
     /// A picture with a title, a line about the run, and a scale bar.
     fn begin(&self, what: &str) -> Picture {
-        let Summary { world, strategy, seed, resolution, scans, path_length_m, ending, .. } =
-            self.summary;
+        let Summary { world, strategy, update, seed, resolution, scans, .. } = self.summary;
+        let (driven, ending) = (self.summary.path_length_m, self.summary.ending);
         let mut picture = Picture::new(self.mission.grid);
         picture
             .title(&format!("{world}: {what}"))
             .subtitle(&format!(
-                "{strategy}, seed {seed}, r = {resolution} m: {scans} scans, {path_length_m:.1} m driven; {}",
-                in_words(*ending)
+                "{strategy}, update {update}, seed {seed}, r = {resolution} m: {scans} scans, {driven:.1} m driven; {}",
+                in_words(ending)
             ))
             .scale_bar();
         picture

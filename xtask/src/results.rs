@@ -38,10 +38,9 @@ pub(crate) fn write(
     let Task { world, mission, seed, thresholds } = task;
     let truth = Truth::new(world, mission);
     let score = truth.score(&run.map, &truth.scored_cells(world, mission, run));
-    let strategy = &mission.config.planner.strategy;
     let summary = Summary::new(
         world.name(),
-        strategy,
+        &mission.config,
         *seed,
         run,
         (&score, CutOff::new(&truth, mission, run)),

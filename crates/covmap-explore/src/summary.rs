@@ -1,7 +1,7 @@
 //! The numbers of a run.
 
-use crate::{CutOff, Ending, Run, Score};
-use covmap_plan::{CellStatus, Strategy};
+use crate::{Config, CutOff, Ending, Run, Score};
+use covmap_plan::CellStatus;
 use serde::{Deserialize, Serialize};
 
 /// How many cells the certificate puts where.
@@ -43,6 +43,8 @@ pub struct Summary {
     pub world: String,
     /// The strategy as in Fig. 7.
     pub strategy: String,
+    /// How a reading changed the belief: the name of the update.
+    pub update: String,
     /// The seed of the noise.
     pub seed: u64,
     /// r \[m\].
@@ -78,7 +80,7 @@ impl Summary {
     /// The numbers of a run.
     pub fn new(
         world: &str,
-        strategy: &Strategy,
+        config: &Config,
         seed: u64,
         run: &Run,
         (score, cut_off): (&Score, CutOff),
@@ -87,7 +89,8 @@ impl Summary {
     ) -> Self {
         Self {
             world: world.to_owned(),
-            strategy: strategy.to_string(),
+            strategy: config.planner.strategy.to_string(),
+            update: config.model.update.name().to_owned(),
             seed,
             resolution: run.map.grid().resolution(),
             ending: run.ending,

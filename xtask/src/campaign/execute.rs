@@ -89,11 +89,10 @@ fn measure(
     let scored = truth.scored_cells(world, mission, &run);
     let score = truth.score(&run.map, &scored);
     let accuracy = Accuracy::new(&truth, mission, &run.map, &scored);
-    let strategy = &mission.config.planner.strategy;
     let hash = hasher.finish();
     let summary = Summary::new(
         world.name(),
-        strategy,
+        &mission.config,
         seed,
         &run,
         (&score, CutOff::new(&truth, mission, &run)),

@@ -74,9 +74,11 @@ impl Pictured<'_> {
         let Self { world, mission, run } = self;
         let truth = Truth::new(world, mission);
         let score = truth.score(&run.map, &truth.scored_cells(world, mission, run));
+        let mut config = mission.config.clone();
+        config.planner.strategy = strategy;
         let summary = Summary::new(
             world.name(),
-            &strategy,
+            &config,
             seed,
             run,
             (&score, CutOff::new(&truth, mission, run)),

@@ -80,7 +80,7 @@ impl CauseParameters {
             behind: 0.34,
             behind_weight: 0.27,
             sigma_behind: 0.21,
-            free: FreeSpace { share: 0.42, range: 0.64, width: 0.68, sigma: 0.06 },
+            free: FreeSpace { share: 0.35, range: 0.85, width: 0.5, sigma: 0.06 },
             beyond: 0.1,
             no_echo: NoEchoShare { range: 0.3, share: 0.2 },
         }
