@@ -40,6 +40,7 @@ The folder that is written:
   entropy.png               what is left uncertain
   truth.png                 the exact coverage of every cell
   occupancy.png             the log-odds occupancy grid of the same scans
+  partial.png, .svg         truth, coverage and occupancy where walls cut through cells
   certificate.png           why there is nothing left to do, cell by cell
 It is DIR.partial while it is being written, with a valid trace at any time. The same run
 replaces its own DIR; that of another run is replaced with --force only, and any other never.

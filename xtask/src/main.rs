@@ -29,6 +29,7 @@ mod memory;
 mod model;
 mod output;
 mod paper;
+mod partial;
 mod pictures;
 mod progress;
 mod readings;

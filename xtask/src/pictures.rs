@@ -150,12 +150,7 @@ impl Pictures<'_> {
 
     /// The log-odds occupancy grid of the same scans.
     pub(crate) fn occupancy(&self) -> Result<Picture> {
-        let (_, model) = self.mission.config.build()?;
-        let map = &self.run.map;
-        let mut occupancy = OccupancyGrid::new(self.mission.grid, OccupancyParameters::default());
-        let pinned = map.grid().cells().filter(|cell| map.is_pinned(*cell));
-        pinned.for_each(|cell| occupancy.pin_free(cell));
-        self.run.scans.iter().for_each(|scan| occupancy.integrate(&model, scan));
+        let occupancy = occupancy_of(self.mission, self.run)?;
         let mut picture = self.begin("log-odds occupancy grid of the same scans");
         draw_occupancy(&mut picture, &occupancy);
         Ok(picture)
@@ -190,6 +185,17 @@ pub(crate) fn draw_coverage(picture: &mut Picture, map: &CoverageMap, explored: 
         .cells(&faded(map, explored), |color| *color)
         .color_bar("coverage", 0.0, 1.0, |c| coverage_color(Some(c)))
         .legend(&[(Rgb::UNKNOWN, "unknown (uncertain cells fade to it)")]);
+}
+
+/// The log-odds occupancy grid of a run's scans.
+pub(crate) fn occupancy_of(mission: &Mission, run: &Run) -> Result<OccupancyGrid> {
+    let (_, model) = mission.config.build()?;
+    let map = &run.map;
+    let mut occupancy = OccupancyGrid::new(mission.grid, OccupancyParameters::default());
+    let pinned = map.grid().cells().filter(|cell| map.is_pinned(*cell));
+    pinned.for_each(|cell| occupancy.pin_free(cell));
+    run.scans.iter().for_each(|scan| occupancy.integrate(&model, scan));
+    Ok(occupancy)
 }
 
 /// The entropy of each cell.

@@ -1,6 +1,7 @@
 //! What a run leaves behind.
 
 use crate::explore::Task;
+use crate::partial;
 use crate::pictures::Pictures;
 use anyhow::Result;
 use covmap::{Cell, CoverageMap};
@@ -57,6 +58,8 @@ pub(crate) fn write(
     pictures.errors(&run.bumped_at).save(folder.path("errors.png"))?;
     pictures.occupancy()?.save(folder.path("occupancy.png"))?;
     pictures.certificate().save(folder.path("certificate.png"))?;
+    partial::figure(mission, run, &truth, &summary)?
+        .save(folder.path("partial.svg"), folder.path("partial.png"))?;
     // Last: whoever finds it finds all the others.
     write_json(folder.path("summary.json"), &summary)?;
     Ok((summary, counts))

@@ -22,7 +22,12 @@ fn refuse(part: &str, instead: &str, expected: &[&str]) {
 /// Refuses the shipped configuration with one line, that of a field, replaced.
 #[track_caller]
 fn refuse_config(field: &str, instead: &str, expected: &[&str]) {
-    let good = std::fs::read_to_string(shipped("configs/b21r.ron")).unwrap();
+    refuse_config_of("configs/b21r.ron", field, instead, expected);
+}
+
+#[track_caller]
+fn refuse_config_of(config: &str, field: &str, instead: &str, expected: &[&str]) {
+    let good = std::fs::read_to_string(shipped(config)).unwrap();
     let is_field = |line: &str| line.trim_start().starts_with(&format!("{field}:"));
     assert_eq!(good.lines().filter(|line| is_field(line)).count(), 1, "{field}");
     let lines = good.lines().map(|line| if is_field(line) { instead } else { line });
@@ -78,13 +83,21 @@ fn polygons_that_are_none_are_refused() {
 #[test]
 fn an_error_in_a_configuration_names_file_line_column_and_field() {
     refuse_config("speed", "sped: 0.5,", &["robot.ron:", "robot", "sped"]);
-    refuse_config("tempering", "", &["robot.ron:", "model", "tempering"]);
+    refuse_config("chance", "", &["robot.ron:", "model", "chance"]);
+    refuse_config("update", "update: Guess((", &["robot.ron:", "model.update", "Guess"]);
+    let paper = "configs/paper.ron";
+    refuse_config_of(paper, "tempering", "", &["robot.ron:", "model", "tempering"]);
     refuse_config("strategy", "strategy: Fbe,", &["robot.ron:", "planner.strategy", "Fbe"]);
 }
 
 #[test]
 fn impossible_configurations_are_refused() {
-    refuse_config("sigma_in", "sigma_in: 0.01,", &["model.sigma_in", "σ_in 0.01", "σ_out"]);
+    let sigmas = ["model.sigma_in", "σ_in 0.01", "σ_out"];
+    refuse_config_of("configs/paper.ron", "sigma_in", "sigma_in: 0.01,", &sigmas);
+    let unpredicted = ["planner.gain", "MutualInformation", "Eq14"];
+    refuse_config_of("configs/paper.ron", "gain", "gain: MutualInformation,", &unpredicted);
+    refuse_config("sigma_behind", "sigma_behind: 0.01,", &["model.sigma_behind", "0.01", "0.05"]);
+    refuse_config("bearings", "bearings: 99,", &["model.bearings", "99", "1..=16"]);
     refuse_config("radius", "radius: -0.27,", &["robot.radius", "-0.27"]);
     refuse_config("bins", "bins: 1,", &["model.bins", "1"]);
     let name = "planner.entropy_threshold";

@@ -67,8 +67,9 @@ fn traces_that_lie_are_refused() {
     refuse("{}\n", "trace.jsonl:1:");
     refuse("[1, 2\n", "trace.jsonl:1:");
     refuse(&instead("\"covmap_trace\":2", "\"covmap_trace\":99"), "version 99");
-    refuse(&number_after(&good, "\"width\":", "999999999"), "20000000 cells");
-    refuse(&number_after(&good, "\"width\":", "1"), "trace.jsonl");
+    let width = "\"resolution\":0.2,\"width\":";
+    refuse(&number_after(&good, width, "999999999"), "20000000 cells");
+    refuse(&number_after(&good, width, "1"), "trace.jsonl");
     refuse(&instead("\"inside\":[[", "\"inside\":[[9,3],["), "inside[0]");
     refuse(&instead("\"inside\":[[", "\"inside\":[[0,99999999],["), "inside[0]");
     let (before, inside) = good.split_once("\"inside\":").unwrap();
@@ -89,5 +90,6 @@ fn traces_that_lie_are_refused() {
         "25 ranges",
     );
     refuse(&instead("\"ranges\":[", "\"ranges\":[7,"), "trace.jsonl:2:");
-    refuse(&instead("\"gain\":", "\"gain\":1"), "differs");
+    let (before, after) = good.rsplit_once("\"gain\":").unwrap();
+    refuse(&format!("{before}\"gain\":1{after}"), "differs");
 }

@@ -4,7 +4,7 @@ use crate::typed::{Shell, shipped, short_run};
 use covmap::CoverageMap;
 use covmap_io::{MapCell, MapServerMap, load_map_server};
 
-const FILES: [&str; 11] = [
+const FILES: [&str; 13] = [
     "summary.json",
     "trace.jsonl",
     "belief.bin",
@@ -15,11 +15,14 @@ const FILES: [&str; 11] = [
     "truth.png",
     "errors.png",
     "occupancy.png",
+    "partial.png",
+    "partial.svg",
     "certificate.png",
 ];
-const KEYS: [&str; 24] = [
+const KEYS: [&str; 25] = [
     "world",
     "strategy",
+    "update",
     "seed",
     "resolution",
     "ending",
