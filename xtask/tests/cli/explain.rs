@@ -90,6 +90,7 @@ fn traces_that_lie_are_refused() {
         "25 ranges",
     );
     refuse(&instead("\"ranges\":[", "\"ranges\":[7,"), "trace.jsonl:2:");
-    let (before, after) = good.rsplit_once("\"gain\":").unwrap();
-    refuse(&format!("{before}\"gain\":1{after}"), "differs");
+    let (scans, decisions) = good.split_once("{\"Decision\"").unwrap();
+    let decisions = decisions.replacen("\"gain\":", "\"gain\":1", 1);
+    refuse(&format!("{scans}{{\"Decision\"{decisions}"), "differs");
 }
