@@ -152,8 +152,12 @@ impl WithSimd for GainsOfRow<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> RowGains {
-        let mut fronts = Vec::new();
-        self.row.beams.iter().map(|asked| self.gain(asked, &mut fronts)).collect()
+        let (mut fronts, mut gains) = (Vec::new(), Vec::with_capacity(self.row.beams.len()));
+        // A closure would be compiled for narrower registers.
+        for asked in &self.row.beams {
+            gains.push(self.gain(asked, &mut fronts));
+        }
+        gains
     }
 }
 
@@ -228,9 +232,11 @@ impl GainsOfRow<'_> {
     /// Adds the gains of the cells in front of the ends of all outcomes.
     #[inline(always)]
     fn add_front(&self, gain: &mut Lanes, beam: &CauseBeam, fronts: &mut [Front], x: usize) {
-        match &self.cause.front {
-            Some(polynomials) => self.add_front_sums(gain, (beam, polynomials), fronts, x),
-            None => fronts.iter().for_each(|front| self.add_each_front(gain, beam, front, x)),
+        if let Some(polynomials) = &self.cause.front {
+            return self.add_front_sums(gain, (beam, polynomials), fronts, x);
+        }
+        for front in fronts {
+            self.add_each_front(gain, beam, front, x);
         }
     }
 

@@ -68,23 +68,32 @@ impl AtEnd {
             let weights = kernel.ended[first..].iter().zip(&self.free[first..]);
             for ((bin, e), (ended, free)) in (first..).zip(&mut excess).zip(weights) {
                 let (h, h_hat) = (prior.h(bin), prior.h_hat(bin));
+                // Loops of one result each become vector instructions.
+                let mut here = [0.0; LANES];
                 for lane in 0..LANES {
-                    e[lane] = by_end[lane] * ended + by_free[lane] * free;
-                    above[lane] += h[lane] * e[lane];
-                    terms[lane] += h_hat[lane] * e[lane];
+                    here[lane] = by_end[lane] * ended + by_free[lane] * free;
                 }
+                add_product(&mut above, h, &here);
+                add_product(&mut terms, h_hat, &here);
+                *e = here;
             }
             let all = w(&flat(&excess));
             for (bin, w) in (first..self.bins).zip(all.as_chunks::<LANES>().0) {
                 let h = prior.h(bin);
-                for lane in 0..LANES {
-                    terms[lane] += h[lane] * w[lane];
-                }
+                add_product(&mut terms, h, w);
             }
         }
         let gain = gains(&terms, &above);
         for lane in 0..LANES {
             sum[lane] += gain[lane];
         }
+    }
+}
+
+/// Adds products, lane by lane.
+#[inline(always)]
+fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
+    for lane in 0..LANES {
+        sum[lane] += a[lane] * b[lane];
     }
 }
