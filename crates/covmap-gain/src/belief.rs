@@ -171,6 +171,13 @@ impl Belief {
         (y + self.border) * self.raster_width() + x + self.border
     }
 
+    /// Row and column of a cell of the grid, by its index in the bordered rasters.
+    #[inline(always)]
+    pub(crate) fn place(&self, bordered: usize) -> (usize, usize) {
+        let width = self.raster_width();
+        (bordered / width - self.border, bordered % width - self.border)
+    }
+
     /// Takes over a cell's posterior. Returns whether what it reflects, or whether it can
     /// change at all, is different now.
     pub(crate) fn update(&mut self, map: &CoverageMap, cell: Cell) -> bool {

@@ -23,17 +23,20 @@
 
 mod beam;
 mod causes;
+mod ceilings;
 mod ends;
 mod polynomials;
 
 use crate::belief::{Belief, NOT_KNOWN, lanes_at};
 use crate::memory::Size;
 use crate::numbers::to_f32;
-use crate::outcomes::{AskedRow, GroupBeam, RowGains};
+use crate::outcomes::{AskedRow, RowGains};
+use crate::sight::GroupLikelihood;
 use crate::view_points::groups_per_row;
 use crate::{InformationGain, Stencil, evidence::Evidence};
 use beam::CauseBeam;
 use causes::GroupCauses;
+use ceilings::Ceilings;
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes};
 use covmap_model::{CauseParameters, ModelParameters, SensorModel, gaussian, opaque};
@@ -56,6 +59,8 @@ pub(crate) struct Cause {
     front: Option<Polynomials>,
     /// B of every cell, over s; `None` likewise.
     behind: Option<Polynomials>,
+    /// Of the cells at the end; `None` without bounds.
+    ceilings: Option<Ceilings>,
     /// Bordered: E\[c\]^p.
     surface: Vec<f32>,
     /// Bordered: 1 − o.
@@ -69,33 +74,42 @@ impl Cause {
         stencil: &Stencil,
         grid: Grid,
         belief: &Belief,
-        gain: InformationGain,
+        (gain, with_bounds): (InformationGain, bool),
     ) -> Self {
         let ModelParameters { bins, .. } = *model.parameters();
         let (p, r) = (parameters, model.resolution());
         let beam = |beam| CauseBeam::new((p, r, bins), beam, stencil, belief.raster_width());
-        let evidence = |mu, sigma| {
-            move |share: f64| {
-                let mut t = vec![0.0; bins];
-                gaussian(mu, sigma, &mut t);
-                #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
-                let even = (1.0 - share) / bins as f64;
-                t.iter_mut().for_each(|t| *t = even + share * *t);
-                Evidence::of(t)
-            }
-        };
+        let (free, covered) = ((0.0, p.free.sigma), (1.0, p.sigma_behind));
         #[allow(clippy::cast_precision_loss, reason = "at most 16 bearings")]
         let all = p.bearings as f64;
         let most_passed = p.free.share * p.no_echo.share.max(all / (all + p.chance));
-        let most_behind = p.behind_weight / (1.0 + p.chance);
+        let most_ended = 1.0 / (1.0 + p.chance);
+        let most_behind = p.behind_weight * most_ended;
+        let polynomials = |kernel, most| {
+            Polynomials::new(grid, gain, most, |share| evidence(bins, kernel, share))
+        };
+        let (front, behind) = (polynomials(free, most_passed), polynomials(covered, most_behind));
+        let usable = model.parameters().usable_range;
+        let kernels = kernels_at_the_end((p.sigma_in.at(0.0, 0.0), p.sigma_in.at(usable, usable)));
+        let ceilings = || {
+            Ceilings::new(
+                grid,
+                (most_ended, most_passed),
+                kernels.len(),
+                |kernel, share| evidence(bins, kernels[kernel], share),
+                |share| evidence(bins, free, share),
+            )
+        };
         let cells = belief.expected().len();
         Self {
             parameters: p.clone(),
             grid,
             beams: stencil.beams.iter().map(beam).collect(),
             at_end: AtEnd::new(p, bins),
-            front: Polynomials::new(grid, gain, most_passed, evidence(0.0, p.free.sigma)),
-            behind: Polynomials::new(grid, gain, most_behind, evidence(1.0, p.sigma_behind)),
+            // Without polynomials a bound would cost as much as a gain.
+            ceilings: (with_bounds && front.is_some() && behind.is_some()).then(ceilings),
+            front,
+            behind,
             surface: vec![0.0; cells],
             clear: vec![1.0; cells],
         }
@@ -106,13 +120,20 @@ impl Cause {
         // A cell of the stencil, and its kernels for the outcomes that end nearby.
         let stencil = size.stencil * (40.0 + 4.0 * (4.0 * size.bins + 16.0));
         let ends = size.beams * size.ranges * 40.0;
-        2.0 * Polynomials::bytes(size) + 8.0 * size.bordered() + stencil + ends
+        2.0 * Polynomials::bytes(size)
+            + Ceilings::bytes(size)
+            + 8.0 * size.bordered()
+            + stencil
+            + ends
     }
 
     /// Takes over blocks of cells that changed, given in ascending order.
     pub(crate) fn update(&mut self, arch: Arch, belief: &Belief, changed: &[usize]) {
         for polynomials in [&mut self.front, &mut self.behind].into_iter().flatten() {
             polynomials.update(arch, belief, changed);
+        }
+        if let Some(ceilings) = &mut self.ceilings {
+            ceilings.update(arch, belief, changed);
         }
         let p = &self.parameters;
         let (width, per_row) = (self.grid.width(), groups_per_row(&self.grid));
@@ -133,11 +154,57 @@ impl Cause {
         }
     }
 
+    /// Whether there are bounds.
+    pub(crate) fn has_bound(&self) -> bool {
+        self.ceilings.is_some()
+    }
+
+    /// An upper bound of the gain of a beam from each view-point of a group; `here` is the index of
+    /// the first one in the bordered rasters.
+    #[inline(always)]
+    pub(crate) fn bound(
+        &self,
+        belief: &Belief,
+        beam: usize,
+        here: usize,
+        likelihood: &GroupLikelihood,
+    ) -> Lanes {
+        let (y, x) = belief.place(here);
+        let count = likelihood.echoes().len() + 1;
+        let (mut outcomes, mut probabilities) =
+            (Vec::with_capacity(count), Vec::with_capacity(count));
+        for (k, p) in likelihood.echoes() {
+            outcomes.push(*k);
+            probabilities.push(p.map(to_f32));
+        }
+        outcomes.push(usize::MAX);
+        probabilities.push(likelihood.no_echo().map(to_f32));
+        let group = GroupSum { cause: self, belief, y, x };
+        group.sum::<false>(beam, (&outcomes, &probabilities), &mut Vec::with_capacity(count))
+    }
+
     /// The gains of all beams of some rows.
     pub(crate) fn gains(&self, arch: Arch, belief: &Belief, rows: &[AskedRow]) -> Vec<RowGains> {
         let rows = rows.par_iter().with_min_len(ROWS_PER_THREAD);
         rows.map(|row| arch.dispatch(GainsOfRow { cause: self, belief, row })).collect()
     }
+}
+
+/// What a kernel says with a share: (1 − share)·U + share·N(μ, σ).
+fn evidence(bins: usize, (mu, sigma): (f64, f64), share: f64) -> Evidence {
+    let mut t = vec![0.0; bins];
+    gaussian(mu, sigma, &mut t);
+    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
+    let even = (1.0 - share) / bins as f64;
+    t.iter_mut().for_each(|t| *t = even + share * *t);
+    Evidence::of(t)
+}
+
+/// μ and σ of kernels that stand for all at the end.
+fn kernels_at_the_end((least, most): (f64, f64)) -> Vec<(f64, f64)> {
+    let sigmas = [least, 0.5 * (least + most), most];
+    let mu = |i: u32| 0.1 * f64::from(i);
+    sigmas.into_iter().flat_map(|sigma| (0..=10).map(move |i| (mu(i), sigma))).collect()
 }
 
 /// The gains of one row.
@@ -152,10 +219,15 @@ impl WithSimd for GainsOfRow<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) -> RowGains {
-        let (mut fronts, mut gains) = (Vec::new(), Vec::with_capacity(self.row.beams.len()));
+        let Self { cause, belief, row } = self;
+        let (mut fronts, mut gains) = (Vec::new(), Vec::with_capacity(row.beams.len()));
         // A closure would be compiled for narrower registers.
-        for asked in &self.row.beams {
-            gains.push(self.gain(asked, &mut fronts));
+        for asked in &row.beams {
+            let group = GroupSum { cause, belief, y: row.y, x: asked.group * LANES };
+            let outcomes = &row.outcomes[asked.outcomes.clone()];
+            let probabilities = &row.probabilities[asked.outcomes.clone()];
+            let gain = group.sum::<true>(asked.beam, (outcomes, probabilities), &mut fronts);
+            gains.push(gain.map(f64::from));
         }
         gains
     }
@@ -168,22 +240,35 @@ struct Front {
     any: Lanes,
 }
 
-impl GainsOfRow<'_> {
+/// A beam's sums over its outcomes from a group of view-points, the first of which is in column `x`
+/// of row `y`.
+struct GroupSum<'a> {
+    cause: &'a Cause,
+    belief: &'a Belief,
+    y: usize,
+    x: usize,
+}
+
+impl GroupSum<'_> {
+    /// E\[I\] of a beam, or an upper bound of it.
     #[inline(always)]
-    fn gain(&self, asked: &GroupBeam, fronts: &mut Vec<Front>) -> [f64; LANES] {
+    fn sum<const EXACT: bool>(
+        &self,
+        beam: usize,
+        (outcomes, probabilities): (&[usize], &[Lanes]),
+        fronts: &mut Vec<Front>,
+    ) -> Lanes {
         let (cause, belief) = (self.cause, self.belief);
-        let beam = &cause.beams[asked.beam];
-        let x = asked.group * LANES;
-        let here = belief.bordered(self.row.y * cause.grid.width()) + x;
+        let beam = &cause.beams[beam];
+        let here = belief.bordered(self.y * cause.grid.width()) + self.x;
         let mut causes = GroupCauses::new(&cause.parameters);
         let mut gain = [0.0; LANES];
         fronts.clear();
-        let outcomes = self.row.outcomes[asked.outcomes.clone()].iter();
-        for (k, probability) in outcomes.zip(&self.row.probabilities[asked.outcomes.clone()]) {
+        for (k, probability) in outcomes.iter().zip(probabilities) {
             let (cells, any) = if let Some(end) = beam.ends.get(*k) {
                 causes.pass(&cause.clear, &beam.cells[..end.front], here);
                 causes.explain(&cause.surface, beam, end, here);
-                self.add_ends(&mut gain, (beam, end), &causes, probability, x);
+                self.add_ends::<EXACT>(&mut gain, (beam, end), &causes, probability);
                 (end.front, causes.any)
             } else {
                 let mut silent = GroupCauses::new(&cause.parameters);
@@ -192,31 +277,35 @@ impl GainsOfRow<'_> {
             };
             fronts.push(Front { cells, probability: *probability, any });
         }
-        self.add_front(&mut gain, beam, fronts, x);
-        gain.map(f64::from)
+        self.add_front(&mut gain, beam, fronts);
+        gain
     }
 
-    /// Adds the gains of the cells at the end and behind it.
+    /// Adds the gains, or their bounds, of the cells at the end and behind it.
     #[inline(always)]
-    fn add_ends(
+    fn add_ends<const EXACT: bool>(
         &self,
         gain: &mut Lanes,
         (beam, end): (&CauseBeam, &beam::End),
         causes: &GroupCauses<'_>,
         probability: &Lanes,
-        x: usize,
     ) {
         let at_end = &self.cause.at_end;
         let mut sum = [0.0; LANES];
         for (cell, near) in beam.cells[end.front..end.ended].iter().zip(&beam.near[end.first..]) {
-            let Some((y, x)) = self.place(cell, x) else { continue };
-            let prior = self.belief.prior_at(y, x);
-            let kernel = Kernel { ended: &near.ended, weight: 1.0, free: near.free };
-            at_end.add(&mut sum, &prior, kernel, causes.ended(cell), &causes.any);
+            let Some((y, x)) = self.place(cell) else { continue };
+            let ended = causes.ended(cell);
+            if let (false, Some(ceilings)) = (EXACT, &self.cause.ceilings) {
+                ceilings.add(&mut sum, (y, x), (ended, &causes.any), near.free);
+            } else {
+                let prior = self.belief.prior_at(y, x);
+                let kernel = Kernel { ended: &near.ended, weight: 1.0, free: near.free };
+                at_end.add(&mut sum, &prior, kernel, ended, &causes.any);
+            }
         }
         let kernel = Kernel { ended: &at_end.behind, weight: beam.behind_weight, free: 0.0 };
         for cell in &beam.cells[end.ended..end.reach] {
-            let Some((y, x)) = self.place(cell, x) else { continue };
+            let Some((y, x)) = self.place(cell) else { continue };
             if let Some(behind) = &self.cause.behind {
                 behind.add(&mut sum, (y, x), causes.ended(cell), beam.behind_weight);
             } else {
@@ -231,12 +320,12 @@ impl GainsOfRow<'_> {
 
     /// Adds the gains of the cells in front of the ends of all outcomes.
     #[inline(always)]
-    fn add_front(&self, gain: &mut Lanes, beam: &CauseBeam, fronts: &mut [Front], x: usize) {
+    fn add_front(&self, gain: &mut Lanes, beam: &CauseBeam, fronts: &mut [Front]) {
         if let Some(polynomials) = &self.cause.front {
-            return self.add_front_sums(gain, (beam, polynomials), fronts, x);
+            return self.add_front_sums(gain, (beam, polynomials), fronts);
         }
         for front in fronts {
-            self.add_each_front(gain, beam, front, x);
+            self.add_each_front(gain, beam, front);
         }
     }
 
@@ -247,7 +336,6 @@ impl GainsOfRow<'_> {
         gain: &mut Lanes,
         (beam, polynomials): (&CauseBeam, &Polynomials),
         fronts: &mut [Front],
-        x: usize,
     ) {
         fronts.sort_by_key(|front| std::cmp::Reverse(front.cells));
         let mut sums = polynomials.no_sums();
@@ -256,7 +344,7 @@ impl GainsOfRow<'_> {
             sums.add(probability, any);
             let next = fronts.get(i + 1).map_or(0, |next| next.cells);
             for cell in beam.cells[next..*cells].iter().filter(|cell| cell.free > 0.0) {
-                let Some(place) = self.place(cell, x) else { continue };
+                let Some(place) = self.place(cell) else { continue };
                 polynomials.add_sums(gain, place, &sums, cell.free);
             }
         }
@@ -264,10 +352,10 @@ impl GainsOfRow<'_> {
 
     /// Cell by cell for one outcome.
     #[inline(always)]
-    fn add_each_front(&self, gain: &mut Lanes, beam: &CauseBeam, front: &Front, x: usize) {
+    fn add_each_front(&self, gain: &mut Lanes, beam: &CauseBeam, front: &Front) {
         let (at_end, mut sum) = (&self.cause.at_end, [0.0; LANES]);
         for cell in beam.cells[..front.cells].iter().filter(|cell| cell.free > 0.0) {
-            let Some((y, x)) = self.place(cell, x) else { continue };
+            let Some((y, x)) = self.place(cell) else { continue };
             let prior = self.belief.prior_at(y, x);
             let kernel = Kernel { ended: &at_end.behind, weight: 0.0, free: cell.free };
             at_end.add(&mut sum, &prior, kernel, &[0.0; LANES], &front.any);
@@ -277,13 +365,13 @@ impl GainsOfRow<'_> {
         }
     }
 
-    /// Row and column of a cell as the view-point in column `x` sees it; `None` if it is outside of
+    /// Row and column of a cell as the first view-point sees it; `None` if it is outside of
     /// the grid for the whole group.
     #[inline(always)]
-    fn place(&self, cell: &beam::CauseCell, x: usize) -> Option<(usize, isize)> {
+    fn place(&self, cell: &beam::CauseCell) -> Option<(usize, isize)> {
         let grid = &self.cause.grid;
-        let y = self.row.y.wrapping_add_signed(cell.dy);
-        let x = x.cast_signed() + cell.dx;
+        let y = self.y.wrapping_add_signed(cell.dy);
+        let x = self.x.cast_signed() + cell.dx;
         let is_inside =
             y < grid.height() && x > -LANES.cast_signed() && x < grid.width().cast_signed();
         is_inside.then_some((y, x))

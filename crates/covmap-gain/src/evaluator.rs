@@ -35,14 +35,19 @@ impl Evaluator {
         belief: &Belief,
         (gain, upkeep): (InformationGain, Upkeep),
     ) -> Self {
+        let with_bounds = upkeep == Upkeep::Kept;
         match &model.parameters().update {
             Update::Product(_) => {
-                let with_bounds = upkeep == Upkeep::Kept;
                 Self::Product(Box::new(Product::new(model, stencil, grid, belief, with_bounds)))
             }
-            Update::Cause(parameters) => {
-                Self::Cause(Box::new(Cause::new(model, parameters, stencil, grid, belief, gain)))
-            }
+            Update::Cause(parameters) => Self::Cause(Box::new(Cause::new(
+                model,
+                parameters,
+                stencil,
+                grid,
+                belief,
+                (gain, with_bounds),
+            ))),
         }
     }
 
@@ -85,7 +90,7 @@ impl Evaluator {
     pub(crate) fn has_bound(&self) -> bool {
         match self {
             Self::Product(product) => product.has_bound(),
-            Self::Cause(_) => false,
+            Self::Cause(cause) => cause.has_bound(),
         }
     }
 
@@ -94,13 +99,14 @@ impl Evaluator {
     #[inline(always)]
     pub(crate) fn bound(
         &self,
-        beam: &RasterBeam,
+        belief: &Belief,
+        (number, beam): (usize, &RasterBeam),
         here: usize,
         likelihood: &GroupLikelihood,
     ) -> Lanes {
         let bound = match self {
             Self::Product(product) => product.bound(beam, here, likelihood),
-            Self::Cause(_) => None,
+            Self::Cause(cause) => Some(cause.bound(belief, number, here, likelihood)),
         };
         bound.unwrap_or([f32::INFINITY; LANES])
     }

@@ -130,8 +130,8 @@ impl WithSimd for RefreshBounds<'_> {
                     continue;
                 }
                 let here = here + i * LANES;
-                beam.predict(belief, here, likelihood);
-                let bound = evaluator.bound(beam, here, likelihood);
+                beam.predict_gain(belief, here, likelihood);
+                let bound = evaluator.bound(belief, (number, beam), here, likelihood);
                 for lane in 0..LANES {
                     let exact = state.gain >> lane & 1 == 1;
                     gain[lane] = if exact { gain[lane] } else { bound[lane] };

@@ -97,7 +97,7 @@ fn gains_that_are_kept_are_those_of_a_fresh_cache() {
 
 #[test]
 fn no_gain_exceeds_its_bound() {
-    for model in [ModelParameters::product(), ModelParameters::by_hand()] {
+    for model in [ModelParameters::b21r(), ModelParameters::product(), ModelParameters::by_hand()] {
         let model = SensorModel::new(&model, &SonarRing::b21r(), 0.1).unwrap();
         let grid = Grid::new(Point2::new(-2.0, -2.0), 0.1, 43, 37).unwrap();
         let mut map = CoverageMap::new(grid, 11).unwrap();
