@@ -4,12 +4,14 @@ mod bench;
 mod experiments;
 mod files;
 mod memory;
+mod read_out;
 mod safe_map;
 mod values;
 
 pub(crate) use bench::{Bench, Rows};
 pub(crate) use experiments::{Experiments, Figure, Paper, Table};
 pub(crate) use files::{Force, Log, Model, Truth};
+pub(crate) use read_out::{ReadOutFile, Reader};
 pub(crate) use safe_map::SafeMap;
 
 use crate::campaign::{Shard, VERSION};
@@ -42,6 +44,7 @@ The folder that is written:
   occupancy.png             the log-odds occupancy grid of the same scans
   partial.png, .svg         truth, coverage and occupancy where walls cut through cells
   certificate.png           why there is nothing left to do, cell by cell
+  reliability.svg, .png     whether the map knows how right it is
 It is DIR.partial while it is being written, with a valid trace at any time. The same run
 replaces its own DIR; that of another run is replaced with --force only, and any other never.
 
@@ -87,6 +90,7 @@ Examples:
   cargo xtask map corridor.log.gz
   cargo xtask map sonar8/test1 --poses sonar8/test1_poses_corrected.txt
   cargo xtask map sonar8/test1 --sensor laser --resolution 0.05 --out out/laser
+  cargo xtask map corridor.log.gz --config out/fit/config.ron --read-out out/fit/read_out.ron
 
 Exit codes: 0 done; 2 bad input, or a folder that cannot be written; 130 interrupted with Ctrl-C,
 with the map of what was read.
@@ -105,8 +109,9 @@ Example:
 const COMPARE_EXAMPLES: &str = "\
 FIT.ron is a file for `fit`. Every method is tuned on `training` with `evaluations` maps, once for its
 own posteriors and once for a calibration table, and checked on `held_out`; then the other way
-round. The methods: coverage maps unfitted, with γ and σ fitted, with all of `axes` fitted, and those
-read with a prior; log-odds occupancy; Beta counting; a forward model on the same histograms (CRM); two constants.
+round. The methods: coverage maps by the update of the configuration with all of `axes` fitted, read
+with a prior, and unfitted; by the other update with all its parameters fitted; by Eq. (9) with γ and
+σ fitted; log-odds occupancy; Beta counting; a forward model on the same histograms (CRM); two constants.
 Intervals come from resampling blocks of the trajectories.
 
 The folder that is written: compare.csv, and compare.json with the tuned parameters.
@@ -118,13 +123,15 @@ Example:
 const FIT_EXAMPLES: &str = "\
 FIT.ron names a configuration, examples to fit to, examples held out, and the free parameters
 with their bounds; see configs/fit/*.ron. The robot explores each example's world with the given
-configuration; what it measured, and the exact coverage of the cells that were in sight, is the
-example. The search maximises the mean log-likelihood of these coverages.
+configuration, to its certificate or for so many scans; what it measured and touched, and the exact
+coverage of the cells that it measured, is the example. The search maximises the mean log-likelihood
+of these coverages; then a read-out is fitted to the maps that come out.
 
 The folder that is written:
   config.ron     the fitted configuration, for `explore --config`
+  read_out.ron   the calibrated reading of its maps, for `explore --read-out` and `map --read-out`
   fit.json       every evaluation, the profiles, and the scores before and after
-  search.svg, search.png, profiles.svg, profiles.png
+  search.svg, profiles.svg, reliability.svg, and each as .png
 
 Example:
   cargo xtask fit configs/fit/b21r.ron --out out/fit
@@ -277,6 +284,8 @@ pub(crate) struct Explore {
     #[arg(long, value_name = "KIND")]
     pub(crate) registers: Option<WidestRegisters>,
     #[command(flatten)]
+    pub(crate) read_out: ReadOutFile,
+    #[command(flatten)]
     pub(crate) safe_map: SafeMap,
     /// Where the results go [default: out/WORLD-STRATEGY-SEED, and
     /// what else was typed, as in out/lab-IG-1-r0.2]
@@ -351,6 +360,8 @@ pub(crate) struct Map {
     /// ... or turned by so many degrees
     #[arg(long, value_name = "DEG", value_parser = every_degrees, default_value = "5")]
     pub(crate) every_degrees: f64,
+    #[command(flatten)]
+    pub(crate) read_out: ReadOutFile,
     #[command(flatten)]
     pub(crate) safe_map: SafeMap,
     /// Where the results go [default: out/LOG-SENSOR, and what else was

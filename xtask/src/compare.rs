@@ -1,7 +1,7 @@
 //! `compare`: mapping methods against the same truth, each tuned and calibrated alike.
 
 use crate::arguments::Fit;
-use crate::fit_file::{FitFile, Source, examples};
+use crate::fit_file::{FitFile, FitPlan, Source};
 use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{csv_file, interrupt, output, say};
@@ -12,6 +12,7 @@ use covmap_fit::{
     MethodParameter, Parameter, Row, TuneSettings, Update, compare, tune,
 };
 use covmap_io::{OutputFolder, write_json};
+use covmap_model::ModelParameters;
 use covmap_world::{stream, uniform};
 use serde::Serialize;
 use std::io::Write;
@@ -40,26 +41,25 @@ struct Direction {
 
 /// A method before it is tuned.
 struct Entry {
-    name: &'static str,
+    name: String,
     method: Method,
     axes: Vec<Axis<MethodParameter>>,
 }
 
 pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
-    let (file, config, name) = FitFile::read(&arguments.file)?;
+    let plan = FitPlan::read(&arguments.file)?;
+    let (file, config) = (&plan.file, &plan.begin.config);
     if file.held_out.is_empty() {
         bail!("{}: held_out: a comparison needs at least one entry", arguments.file.display());
     }
-    let folder = output::of_fit("compare", arguments, (&config, &name))?;
+    let folder = output::of_fit("compare", arguments, &plan)?;
     let mut progress = Progress::new(arguments.quiet);
-    let examples = |sources: &[Source]| {
-        examples(sources, &arguments.file, (&config, &name), (&progress, &interrupt))
-    };
+    let examples = |sources: &[Source]| plan.examples(sources, (&progress, &interrupt));
     let (a, b) = (examples(&file.training)?, examples(&file.held_out)?);
     let mut directions = Vec::new();
     for (training, test) in [(&a, &b), (&b, &a)] {
-        directions.push(direction(&file, &config, (training, test), &interrupt, &mut progress)?);
+        directions.push(direction(file, config, (training, test), &interrupt, &mut progress)?);
         // What was cut short is no comparison.
         if interrupt.done() {
             return Ok(ExitCode::from(interrupt::EXIT_CODE));
@@ -76,37 +76,64 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is compared, the reference first.
+/// What is compared, the reference first: the update of the configuration.
 fn entries(file: &FitFile, config: &Config, training: &[Example]) -> Vec<Entry> {
-    let model = || config.model.clone();
-    let with = |update: Update| Method { model: model(), update };
-    let coverage = |name, is_free: &dyn Fn(&Axis) -> bool| {
-        let free = file.axes.iter().filter(|axis| is_free(axis));
-        let axes = free.map(|&Axis { parameter, from, to }| Axis {
-            parameter: MethodParameter::Model(parameter),
-            from,
-            to,
-        });
-        Entry { name, method: with(Update::Coverage), axes: axes.collect() }
+    let with = |update: Update| Method { model: config.model.clone(), update };
+    let coverage = |name: &str, model: &ModelParameters, axes: &[Axis]| Entry {
+        name: format!("coverage, {}{name}", in_words(&model.update)),
+        method: Method { model: model.clone(), update: Update::Coverage },
+        axes: axes.iter().map(of_model).collect(),
     };
+    let own = |name: &str, axes: &[Axis]| coverage(name, &config.model, axes);
     let read_with_a_prior = |entry: Entry| {
         let update = Update::CoverageWithPrior(0.5);
         let axes = update.axes().into_iter().chain(entry.axes).collect();
-        Entry { name: "coverage, all free, prior", method: with(update), axes }
+        Entry { method: Method { update, ..entry.method }, axes, ..entry }
     };
-    let baseline = |name, update: Update| Entry { name, axes: update.axes(), method: with(update) };
-    let constant = |name, method| Entry { name, method, axes: Vec::new() };
+    let baseline = |name: &str, update: Update| Entry {
+        name: name.to_owned(),
+        axes: update.axes(),
+        method: with(update),
+    };
+    let constant = |name: &str, method| Entry { name: name.to_owned(), method, axes: Vec::new() };
+    let other = the_other(&config.model);
+    let product = if config.model.update.product().is_some() { &config.model } else { &other };
+    let paper: Vec<Axis> = Axis::all_of(&product.update)
+        .into_iter()
+        .filter(|axis| PAPER.contains(&axis.parameter))
+        .collect();
     vec![
-        coverage("coverage, all free", &|_| true),
-        read_with_a_prior(coverage("coverage, all free", &|_| true)),
-        coverage("coverage, γ and σ", &|axis| PAPER.contains(&axis.parameter)),
-        coverage("coverage, unfitted", &|_| false),
+        own("", &file.axes),
+        read_with_a_prior(own(", prior", &file.axes)),
+        own(", unfitted", &[]),
+        coverage("", &other, &Axis::all_of(&other.update)),
+        coverage(", γ and σ", product, &paper),
         baseline("log-odds", Update::LogOdds(LogOdds::default())),
         baseline("Beta counting", Update::BetaCounting(BetaCounting::default())),
         baseline("forward (CRM)", Update::Crm(Crm::default())),
         constant("constant .5", with(Update::Constant(0.5))),
-        constant("constant, mean", Method::training_mean(model(), training)),
+        constant("constant, mean", Method::training_mean(config.model.clone(), training)),
     ]
+}
+
+fn in_words(update: &covmap_model::Update) -> &'static str {
+    match update {
+        covmap_model::Update::Product(_) => "Eq. 9",
+        covmap_model::Update::Cause(_) => "by cause",
+    }
+}
+
+/// The same model with the other update, as it was fitted for the default.
+fn the_other(model: &ModelParameters) -> ModelParameters {
+    let other = match model.update {
+        covmap_model::Update::Product(_) => ModelParameters::b21r(),
+        covmap_model::Update::Cause(_) => ModelParameters::product(),
+    };
+    ModelParameters { update: other.update, ..model.clone() }
+}
+
+fn of_model(&Axis { parameter, from, to }: &Axis) -> Axis<MethodParameter> {
+    Axis { parameter: MethodParameter::Model(parameter), from, to }
 }
 
 fn direction(
@@ -145,7 +172,7 @@ fn direction(
             Ok(tuned.method)
         };
         let (raw, calibrated) = (tuned(false)?, tuned(true)?);
-        contenders.push(Contender { name: entry.name.to_owned(), raw, calibrated });
+        contenders.push(Contender { name: entry.name.clone(), raw, calibrated });
     }
     progress.say("resampling blocks of the trajectories …");
     let settings =
@@ -215,7 +242,7 @@ fn tell(direction: &Direction) {
         };
         let (all, partial) = (&row.classes.all, &row.classes.partial);
         say::line(format!(
-            "  {:18} {:10} all {}  crps {:.3}  error {:.3}  90 %: {:.2}   partial {}  error {:.3}  90 %: {:.2}",
+            "  {:26} {:10} all {}  crps {:.3}  error {:.3}  90 %: {:.2}   partial {}  error {:.3}  90 %: {:.2}",
             row.name,
             if row.calibrated { "calibrated" } else { "" },
             in_words(&all.log_likelihood),

@@ -1,12 +1,13 @@
 //! `explore`: a world is explored to its end.
 
-use crate::arguments::Explore;
+use crate::arguments::{Explore, Reader};
 use crate::campaign::Digest;
 use crate::interrupt::{self, Interrupt};
 use crate::progress::Progress;
+use crate::results::Written;
 use crate::trace_file::TraceWriter;
 use crate::world_file::{self, Remarks, WorldFile};
-use crate::{input, output, results, say};
+use crate::{fit_report, input, output, results, say};
 use anyhow::Result;
 use covmap_explore::{
     Config, CutOff, Ending, Limits, Mission, Run, SimulatedRobot, Summary, TraceHeader, explore,
@@ -25,6 +26,8 @@ pub(crate) struct Task {
     pub(crate) seed: u64,
     /// When a cell of the map for other software is free or occupied.
     pub(crate) thresholds: MapThresholds,
+    /// How the map is read.
+    pub(crate) reader: Reader,
 }
 
 pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
@@ -33,9 +36,10 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
         widest.limit();
     }
     let (task, remarks, world) = task(arguments)?;
-    let inputs = [Some(&arguments.world), arguments.config.as_ref()];
+    let read_out = arguments.read_out.read_out.as_ref();
+    let inputs = [Some(&arguments.world), arguments.config.as_ref(), read_out];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
-    let run = run_line(&task, world)?;
+    let run = run_line(&task, world, arguments.read_out.path())?;
     let folder = output::folder(&folder_name(arguments, &task)?, &run, arguments.force, &inputs)?;
     if !arguments.quiet {
         remarks.say();
@@ -48,11 +52,11 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
     let seconds = begun.elapsed().as_secs_f64();
     let hash = trace.finish(&run.map)?;
     progress.say("drawing and scoring the map …");
-    let (summary, counts) = results::write(&folder, &task, &run, seconds, hash)?;
-    let written = folder.finish()?;
+    let (written, counts) = results::write(&folder, &task, &run, seconds, hash)?;
+    let folder = folder.finish()?;
     progress.finish();
     if !arguments.quiet {
-        report(&summary, &counts, &written);
+        report(&written, &counts, &folder);
     }
     Ok(ExitCode::from(exit_code(run.ending)))
 }
@@ -70,7 +74,8 @@ fn task(arguments: &Explore) -> Result<(Task, Remarks, Vec<u8>)> {
     let places = ((&world, arguments.world.as_path()), (&config, name.as_path()));
     let mission = input::mission(places.0, places.1, arguments.start, limits)?;
     let thresholds = arguments.safe_map.thresholds(&mission.config.planner);
-    Ok((Task { world, mission, seed: arguments.seed, thresholds }, remarks, bytes))
+    let reader = arguments.read_out.load(mission.config.model.bins)?;
+    Ok((Task { world, mission, seed: arguments.seed, thresholds, reader }, remarks, bytes))
 }
 
 /// The configuration with what was typed instead of what the file says.
@@ -108,16 +113,18 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
         start,
         while_driving.map(|every| format!("every{every}")),
         max_scans.map(|most| format!("max{most}")),
+        arguments.read_out.path().map(output::stem),
     ]))
 }
 
 /// Which run it is: what the trace begins with, and the world.
-fn run_line(task: &Task, world_bytes: Vec<u8>) -> Result<String> {
+fn run_line(task: &Task, world_bytes: Vec<u8>, read_out: Option<&Path>) -> Result<String> {
     let Task { world, mission, seed, .. } = task;
     let strategy = &mission.config.planner.strategy;
     let words = format!("explore {}, {strategy}, seed {seed}", world.name());
     let header = TraceHeader::new(mission, world.name(), *seed);
     let digest = Digest::default().with(serde_json::to_vec(&header)?).with(world_bytes);
+    let digest = read_out.into_iter().try_fold(digest, Digest::with_file)?;
     Ok(output::run_line(&words, digest))
 }
 
@@ -163,11 +170,16 @@ pub(crate) fn in_words(ending: Ending) -> &'static str {
     }
 }
 
+/// What the numbers of the measured cells are.
+const MEASURED_LEGEND: &str = "  (mean log-likelihood of classes alike; of each class the log-likelihood [nats] and \
+                               the error of the mode)";
+
 /// What the words of the report mean, for who does not know them.
 const LEGEND: &str = "  (exhausted: still uncertain, and measuring helps no longer; wall recall: the \
                       share of the walls in sight that the map has; docs/guide.md#reading-the-summary)";
 
-fn report(summary: &Summary, counts: &MapCounts, written: &Path) {
+fn report(written: &Written, counts: &MapCounts, folder: &Path) {
+    let Written { summary, measured, read_out } = written;
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let Summary { world, strategy, update, .. } = summary;
     say::line(format!("{world}, {strategy}, update {update}: {}", in_words(summary.ending)));
@@ -196,12 +208,17 @@ fn report(summary: &Summary, counts: &MapCounts, written: &Path) {
         percent(summary.score.wall_recall),
         by_surface.join(", ")
     ));
+    say::line(fit_report::row("measured", measured));
+    say::line(MEASURED_LEGEND);
+    if let Some(file) = read_out {
+        say::line(format!("  (recall, scores and pictures: read through {})", file.display()));
+    }
     if summary.cut_off.cells > 0 {
         say::line(format!("  {}", cut_off(&summary.cut_off, summary.resolution)));
     }
     say::line(format!("  {}", results::map_line(counts)));
     say::line(LEGEND);
-    say::line(format!("  {}", written.display()));
+    say::line(format!("  {}", folder.display()));
 }
 
 /// What is cut off, and what cuts it off.

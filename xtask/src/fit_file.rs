@@ -26,6 +26,9 @@ const MOST_SCANS: usize = 1_000_000;
 pub(crate) struct FitFile {
     /// Robot, sonar, the model to begin with, and the planner.
     pub(crate) config: PathBuf,
+    /// Who explores the simulated worlds; without it `config`. One explorer for several fits gives
+    /// them the same scans.
+    pub(crate) explorer: Option<PathBuf>,
     /// The side of a cell where an example does not say another \[m\].
     pub(crate) resolution: f64,
     /// Seed of the starts.
@@ -76,40 +79,92 @@ pub(crate) struct Simulated {
     pub(crate) seed: u64,
 }
 
-impl FitFile {
-    /// Reads and checks the file, and the configuration that it names.
-    pub(crate) fn read(path: &Path) -> Result<(Self, Config, PathBuf)> {
-        let file: Self = read_ron(path)?;
-        let name = beside(path, &file.config);
-        let (mut config, _) = input::config(Some(&name))?;
-        config.resolution = file.resolution;
-        input::check(&config, &name)?;
+/// A configuration, and the file that it is from.
+#[derive(Debug, Clone)]
+pub(crate) struct Named {
+    pub(crate) config: Config,
+    pub(crate) file: PathBuf,
+}
+
+/// A fit's file with the configurations that it names.
+#[derive(Debug)]
+pub(crate) struct FitPlan {
+    pub(crate) file: FitFile,
+    /// Where it is.
+    path: PathBuf,
+    /// What the fit begins with.
+    pub(crate) begin: Named,
+    /// Who explores.
+    pub(crate) explorer: Named,
+}
+
+impl Named {
+    fn read(path: &Path, named: &Path, resolution: f64) -> Result<Self> {
+        let file = beside(path, named);
+        let (mut config, _) = input::config(Some(&file))?;
+        config.resolution = resolution;
+        input::check(&config, &file)?;
+        Ok(Self { config, file })
+    }
+}
+
+impl FitPlan {
+    /// Reads and checks the file, and what it names.
+    pub(crate) fn read(path: &Path) -> Result<Self> {
+        let file: FitFile = read_ron(path)?;
+        let begin = Named::read(path, &file.config, file.resolution)?;
+        let explorer = file.explorer.as_ref().unwrap_or(&file.config);
+        let explorer = Named::read(path, explorer, file.resolution)?;
+        if begin.config.robot != explorer.config.robot {
+            bail!(
+                "{}: explorer: {} has another robot than {}; the model is of one ring of sensors",
+                path.display(),
+                explorer.file.display(),
+                begin.file.display()
+            );
+        }
         Axis::check(&file.axes).map_err(about(path))?;
+        for axis in &file.axes {
+            axis.place(&begin.config.model).map_err(about(path))?;
+        }
         if file.axes.is_empty() || file.training.is_empty() {
             bail!("{}: axes and training need at least one entry each", path.display());
         }
         if !(1..=1000).contains(&file.starts) || !(1..=1_000_000).contains(&file.evaluations) {
             bail!("{}: starts must lie in 1..=1000, evaluations in 1..=1000000", path.display());
         }
-        for source in file.training.iter().chain(&file.held_out) {
-            source.check(path, (&config, &name))?;
+        let plan = Self { file, path: path.to_owned(), begin, explorer };
+        for source in plan.file.training.iter().chain(&plan.file.held_out) {
+            plan.check(source)?;
         }
-        Ok((file, config, name))
+        Ok(plan)
     }
-}
 
-/// The examples of some sources in the fit's file `path`, made side by side.
-pub(crate) fn examples(
-    sources: &[Source],
-    path: &Path,
-    config: (&Config, &Path),
-    (progress, interrupt): (&Progress, &Interrupt),
-) -> Result<Vec<Example>> {
-    let example = |source: &Source| {
-        progress.say(&format!("reading {}", source.file().display()));
-        source.example(path, config, &mut || interrupt.flow())
-    };
-    sources.par_iter().map(example).collect()
+    /// The examples of some sources, made side by side.
+    pub(crate) fn examples(
+        &self,
+        sources: &[Source],
+        (progress, interrupt): (&Progress, &Interrupt),
+    ) -> Result<Vec<Example>> {
+        let example = |source: &Source| {
+            progress.say(&format!("reading {}", source.file().display()));
+            match source {
+                Source::Simulated(source) => {
+                    source.example(&self.path, &self.explorer, &mut || interrupt.flow())
+                }
+                Source::Recorded(source) => source.example(&self.path, &self.begin.config),
+            }
+        };
+        sources.par_iter().map(example).collect()
+    }
+
+    /// Finds what is wrong with a source before any work is done.
+    fn check(&self, source: &Source) -> Result<()> {
+        match source {
+            Source::Simulated(source) => source.task(&self.path, &self.explorer).map(|_| ()),
+            Source::Recorded(source) => source.check(&self.path),
+        }
+    }
 }
 
 /// A file that is named in another one.
@@ -125,32 +180,12 @@ impl Source {
             Self::Recorded(source) => &source.log,
         }
     }
-
-    /// Finds what is wrong with it before any work is done.
-    fn check(&self, path: &Path, config: (&Config, &Path)) -> Result<()> {
-        match self {
-            Self::Simulated(source) => source.task(path, config).map(|_| ()),
-            Self::Recorded(source) => source.check(path),
-        }
-    }
-
-    /// The scans and the truth.
-    fn example(
-        &self,
-        path: &Path,
-        config: (&Config, &Path),
-        watch: &mut dyn FnMut() -> ControlFlow<()>,
-    ) -> Result<Example> {
-        match self {
-            Self::Simulated(source) => source.example(path, config, watch),
-            Self::Recorded(source) => source.example(path, config.0),
-        }
-    }
 }
 
 impl Simulated {
     /// The world and the mission in it.
-    fn task(&self, path: &Path, (config, name): (&Config, &Path)) -> Result<(World, Mission)> {
+    fn task(&self, path: &Path, explorer: &Named) -> Result<(World, Mission)> {
+        let Named { config, file: name } = explorer;
         if let Some(scans) = self.scans.filter(|scans| !(1..=MOST_SCANS).contains(scans)) {
             bail!("{}: scans: {scans} must lie in 1..={MOST_SCANS}", path.display());
         }
@@ -160,7 +195,7 @@ impl Simulated {
         config.planner.strategy = self.strategy;
         config.resolution = self.resolution.unwrap_or(config.resolution);
         let limits = Limits { max_scans: self.scans, ..Limits::default() };
-        let mission = input::mission((&world, &file), (&config, name), None, limits)?;
+        let mission = input::mission((&world, &file), (&config, name.as_path()), None, limits)?;
         Ok((world, mission))
     }
 
@@ -188,10 +223,10 @@ impl Simulated {
     fn example(
         &self,
         path: &Path,
-        config: (&Config, &Path),
+        explorer: &Named,
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Example> {
-        let (world, mission) = self.task(path, config)?;
+        let (world, mission) = self.task(path, explorer)?;
         let mut robot = SimulatedRobot::new(&world, &mission.config, self.seed)?;
         let run = explore(&mission, &mut robot, &mut |_, view| match view.scans {
             MOST_SCANS.. => ControlFlow::Break(()),

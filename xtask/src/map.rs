@@ -1,6 +1,6 @@
 //! `map`: the map of what a real robot recorded.
 
-use crate::arguments::{Map, SensorName};
+use crate::arguments::{Map, Reader, SensorName};
 use crate::input::about;
 use crate::interrupt::{self, Interrupt};
 use crate::map_pictures::MapPictures;
@@ -45,6 +45,9 @@ pub(crate) struct MapSummary {
     pub(crate) cells: CellCounts,
     /// The share of the known cells that the body did not pin with an entropy above .65.
     pub(crate) share_entropy_above_0_65: f64,
+    /// The read-out through which that is, if there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) read_out: Option<PathBuf>,
     pub(crate) seconds: f64,
     /// All readings of the log, by the lines that they stand in.
     readings: BTreeMap<&'static str, Readings>,
@@ -80,8 +83,10 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     let body =
         (config.planner.body_evidence == BodyEvidence::Belief).then_some(config.robot.radius);
     let stride = Stride { every: arguments.every, turn: arguments.every_degrees.to_radians() };
+    let reader = arguments.read_out.load(config.model.bins)?;
     let run = run_line(arguments, &config)?;
-    let inputs = [Some(&arguments.log), arguments.poses.as_ref(), arguments.config.as_ref()];
+    let (poses, read_out) = (arguments.poses.as_ref(), arguments.read_out.read_out.as_ref());
+    let inputs = [Some(&arguments.log), poses, arguments.config.as_ref(), read_out];
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     let folder = output::folder(&folder_name(arguments)?, &run, arguments.force, &inputs)?;
     let mapper = Mapper::new((grid, config.model.bins), models, stride, body)?;
@@ -89,9 +94,10 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     interrupt.done();
     progress.say("drawing the map …");
     let seconds = begun.elapsed().as_secs_f64();
-    let summary = summary(arguments, (&survey, remark), &mapper, seconds);
+    let map = reader.read(&mapper.map)?;
+    let summary = summary(arguments, (&survey, remark), (&mapper, &map), seconds);
     map_report::write_readings(&folder.path("readings.csv"), &survey)?;
-    let counts = write(&folder, &mapper, &summary, (arguments, &config))?;
+    let counts = write(&folder, (&mapper, &map, &reader), &summary, (arguments, &config))?;
     let written = folder.finish()?;
     progress.finish();
     if !arguments.quiet {
@@ -212,6 +218,7 @@ fn folder_name(arguments: &Map) -> Result<PathBuf> {
         finer.map(|resolution| format!("r{resolution}")),
         output::unlike(*every, 0.05).map(|every| format!("every{every}")),
         output::unlike(*every_degrees, 5.0).map(|degrees| format!("turn{degrees}")),
+        arguments.read_out.path().map(output::stem),
     ]))
 }
 
@@ -221,8 +228,8 @@ fn run_line(arguments: &Map, config: &Config) -> Result<String> {
     let mut digest = output::log_digest(&arguments.log)?
         .with(serde_json::to_vec(config)?)
         .with_numbers(&[arguments.every, arguments.every_degrees]);
-    if let Some(poses) = &arguments.poses {
-        digest = digest.with_file(poses)?;
+    for file in arguments.poses.as_deref().into_iter().chain(arguments.read_out.path()) {
+        digest = digest.with_file(file)?;
     }
     Ok(output::run_line(&words, digest))
 }
@@ -230,10 +237,9 @@ fn run_line(arguments: &Map, config: &Config) -> Result<String> {
 fn summary(
     arguments: &Map,
     (survey, remark): (&Survey, Option<String>),
-    mapper: &Mapper,
+    (mapper, map): (&Mapper, &CoverageMap),
     seconds: f64,
 ) -> MapSummary {
-    let map = &mapper.map;
     let known = map.grid().cells().filter(|cell| map.is_known(*cell)).count();
     let account = &survey.account;
     let skipped: &Skipped = &account.skipped;
@@ -250,6 +256,7 @@ fn summary(
         path_length_m: mapper.path_length,
         cells: CellCounts { known, unknown: map.grid().len() - known },
         share_entropy_above_0_65: share_uncertain(map),
+        read_out: arguments.read_out.read_out.clone(),
         seconds,
         readings: account.sensors.iter().map(readings).collect(),
         taken_from: map_report::taken_from(account),
@@ -282,13 +289,14 @@ fn share_uncertain(map: &CoverageMap) -> f64 {
 
 fn write(
     folder: &OutputFolder,
-    mapper: &Mapper,
+    (mapper, map, reader): (&Mapper, &CoverageMap, &Reader),
     summary: &MapSummary,
     (arguments, config): (&Map, &Config),
 ) -> Result<MapCounts> {
     let thresholds = arguments.safe_map.thresholds(&config.planner);
-    let counts = results::write_map(folder, &mapper.map, &thresholds, |_| true)?;
-    let pictures = MapPictures { mapper, summary, explored: config.planner.entropy_threshold };
+    let counts = results::write_map(folder, (&mapper.map, map), &thresholds, |_| true)?;
+    let (how, explored) = (reader.in_words(), config.planner.entropy_threshold);
+    let pictures = MapPictures { mapper, map, how: &how, summary, explored };
     pictures.coverage().save(folder.path("coverage.png"))?;
     pictures.entropy().save(folder.path("entropy.png"))?;
     pictures.occupancy().save(folder.path("occupancy.png"))?;

@@ -3,12 +3,17 @@
 use crate::map::MapSummary;
 use crate::mapper::Mapper;
 use crate::pictures::{draw_coverage, draw_entropy, draw_occupancy, draw_path};
+use covmap::CoverageMap;
 use covmap_io::Picture;
 use nalgebra::Point2;
 
 /// All that the pictures show.
 pub(crate) struct MapPictures<'a> {
     pub(crate) mapper: &'a Mapper,
+    /// The map as it is read.
+    pub(crate) map: &'a CoverageMap,
+    /// How that is, in words; may be empty.
+    pub(crate) how: &'a str,
     pub(crate) summary: &'a MapSummary,
     /// ε: a cell with an entropy up to this does not fade \[nats\].
     pub(crate) explored: f64,
@@ -37,15 +42,15 @@ impl MapPictures<'_> {
     }
 
     pub(crate) fn coverage(&self) -> Picture {
-        let mut picture = self.begin("most likely coverage");
-        draw_coverage(&mut picture, &self.mapper.map, self.explored);
+        let mut picture = self.begin(&format!("most likely coverage{}", self.how));
+        draw_coverage(&mut picture, self.map, self.explored);
         self.path(&mut picture);
         picture
     }
 
     pub(crate) fn entropy(&self) -> Picture {
-        let mut picture = self.begin("entropy of the coverage");
-        draw_entropy(&mut picture, &self.mapper.map);
+        let mut picture = self.begin(&format!("entropy of the coverage{}", self.how));
+        draw_entropy(&mut picture, self.map);
         picture
     }
 

@@ -64,6 +64,9 @@ pub(crate) fn tell(
         summary.cells.unknown,
         100.0 * summary.share_entropy_above_0_65
     ));
+    if let Some(file) = &summary.read_out {
+        say::line(format!("  read through {}: entropies, pictures and map.pgm", file.display()));
+    }
     say::line(format!("  {for_others}"));
     for line in summary.taken_from.iter().chain(&summary.remarks).chain(&summary.warning) {
         say::line(format!("  {line}"));

@@ -2,8 +2,8 @@
 
 use crate::arguments::{Fit, Force};
 use crate::campaign::Digest;
+use crate::fit_file::FitPlan;
 use anyhow::{Result, bail};
-use covmap_explore::Config;
 use covmap_io::{OutputFolder, Replace, shown};
 use std::path::{Path, PathBuf};
 
@@ -30,16 +30,16 @@ pub(crate) fn folder(
     Ok(OutputFolder::create(out, run, force.replace())?)
 }
 
-/// Begins the folder of a command that reads a file for `fit`, and its configuration.
-pub(crate) fn of_fit(
-    command: &str,
-    arguments: &Fit,
-    (config, name): (&Config, &Path),
-) -> Result<OutputFolder> {
+/// Begins the folder of a command that reads a file for `fit`, and the configurations that it
+/// names.
+pub(crate) fn of_fit(command: &str, arguments: &Fit, plan: &FitPlan) -> Result<OutputFolder> {
     let Fit { file, out, force, .. } = arguments;
-    let digest = Digest::default().with_file(file)?.with(serde_json::to_vec(config)?);
+    let digest = Digest::default()
+        .with_file(file)?
+        .with(serde_json::to_vec(&plan.begin.config)?)
+        .with(serde_json::to_vec(&plan.explorer.config)?);
     let run = run_line(&format!("{command} {}", stem(file)), digest);
-    folder(out, &run, *force, &[file, name])
+    folder(out, &run, *force, &[file, &plan.begin.file, &plan.explorer.file])
 }
 
 /// What may be replaced by a file of a command that reads `inputs`: never one of these.

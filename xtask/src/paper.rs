@@ -21,7 +21,7 @@ use crate::arguments::Paper;
 use crate::campaign;
 use crate::figure::draw;
 use crate::figures::Output;
-use crate::fit_file::FitFile;
+use crate::fit_file::FitPlan;
 use crate::say;
 use anyhow::Result;
 use claims::Evidence;
@@ -69,7 +69,7 @@ fn check(session: &Session<'_>) -> Result<()> {
         session.check()?;
         campaign::check(&campaign, &session.folder(&campaign))?;
     }
-    [PAPER, B21R].into_iter().try_for_each(|name| FitFile::read(&fit_file(name)).map(|_| ()))
+    [PAPER, B21R].into_iter().try_for_each(|name| FitPlan::read(&fit_file(name)).map(|_| ()))
 }
 
 /// Runs every experiment with both configurations, and draws every figure.

@@ -2,7 +2,7 @@
 
 use crate::pictures::occupancy_of;
 use anyhow::Result;
-use covmap::{Cell, Class, Raster};
+use covmap::{Cell, Class, CoverageMap, Raster};
 use covmap_explore::{Mission, Run, Summary, Truth};
 use covmap_io::{ChartAxis, ColorMap, Figure, HeatMap};
 
@@ -64,14 +64,14 @@ impl Window {
 /// Truth, most likely coverage, and occupancy by log-odds of the same scans, in one window.
 pub(crate) fn figure(
     mission: &Mission,
-    run: &Run,
+    (run, map): (&Run, &CoverageMap),
     truth: &Truth,
     summary: &Summary,
 ) -> Result<Figure> {
     let window = Window::of(truth, run);
     let occupied: Raster<Option<f64>> = occupancy_of(mission, run)?.probabilities();
     let known = |cell: Cell| run.map.grid().index(cell).is_some() && run.map.is_known(cell);
-    let coverage = |cell: Cell| if known(cell) { run.map.mode(cell) } else { f64::NAN };
+    let coverage = |cell: Cell| if known(cell) { map.mode(cell) } else { f64::NAN };
     let panels = [
         ("the truth", panel(&window, run, |c| truth.coverage.get(c).copied().unwrap_or(f64::NAN))),
         ("most likely coverage", panel(&window, run, coverage)),

@@ -60,30 +60,36 @@ impl Verdict {
 pub(crate) struct Pictures<'a> {
     pub(crate) mission: &'a Mission,
     pub(crate) run: &'a Run,
+    /// The map as it is read.
+    pub(crate) map: &'a CoverageMap,
+    /// How that is, in words; may be empty.
+    pub(crate) how: &'a str,
     pub(crate) truth: &'a Truth,
     pub(crate) summary: &'a Summary,
 }
 
 impl Pictures<'_> {
+    /// What the run was, in words.
+    pub(crate) fn of(&self) -> String {
+        let Summary { strategy, update, seed, resolution, scans, .. } = self.summary;
+        let (driven, ending) = (self.summary.path_length_m, self.summary.ending);
+        format!(
+            "{strategy}, update {update}, seed {seed}, r = {resolution} m: {scans} scans, {driven:.1} m driven; {}",
+            in_words(ending)
+        )
+    }
+
     /// A picture with a title, a line about the run, and a scale bar.
     fn begin(&self, what: &str) -> Picture {
-        let Summary { world, strategy, update, seed, resolution, scans, .. } = self.summary;
-        let (driven, ending) = (self.summary.path_length_m, self.summary.ending);
         let mut picture = Picture::new(self.mission.grid);
-        picture
-            .title(&format!("{world}: {what}"))
-            .subtitle(&format!(
-                "{strategy}, update {update}, seed {seed}, r = {resolution} m: {scans} scans, {driven:.1} m driven; {}",
-                in_words(ending)
-            ))
-            .scale_bar();
+        picture.title(&format!("{}: {what}", self.summary.world)).subtitle(&self.of()).scale_bar();
         picture
     }
 
     /// The most likely coverage, and the path.
     pub(crate) fn coverage(&self) -> Picture {
-        let mut picture = self.begin("most likely coverage");
-        draw_coverage(&mut picture, &self.run.map, self.mission.config.planner.entropy_threshold);
+        let mut picture = self.begin(&format!("most likely coverage{}", self.how));
+        draw_coverage(&mut picture, self.map, self.mission.config.planner.entropy_threshold);
         let path = &self.run.trajectory;
         let start = Point2::from(self.mission.start.translation.vector);
         let end = path.last().copied().unwrap_or(start);
@@ -96,8 +102,8 @@ impl Pictures<'_> {
 
     /// How uncertain each cell is.
     pub(crate) fn entropy(&self) -> Picture {
-        let mut picture = self.begin("entropy of the coverage");
-        draw_entropy(&mut picture, &self.run.map);
+        let mut picture = self.begin(&format!("entropy of the coverage{}", self.how));
+        draw_entropy(&mut picture, self.map);
         picture
     }
 
@@ -116,7 +122,7 @@ impl Pictures<'_> {
 
     /// The map against the truth, and where the robot bumped.
     pub(crate) fn errors(&self, bumps: &[Point2<f64>]) -> Picture {
-        let mut picture = self.begin("the map against the truth");
+        let mut picture = self.begin(&format!("the map against the truth{}", self.how));
         let verdicts = Raster::from_fn(self.mission.grid, |cell| self.verdict(cell));
         picture.cells(&verdicts, |verdict| verdict.color());
         for verdict in Verdict::ALL {
@@ -133,7 +139,7 @@ impl Pictures<'_> {
 
     fn verdict(&self, cell: Cell) -> Verdict {
         let is = |raster: &Raster<bool>| raster.get(cell) == Some(&true);
-        let map = &self.run.map;
+        let map = self.map;
         let covered = map.is_known(cell) && map.mode(cell) >= HALF;
         let coverage = self.truth.coverage.get(cell).copied().unwrap_or(1.0);
         let is_free = coverage <= self.mission.config.planner.traversable_coverage;

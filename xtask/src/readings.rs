@@ -4,7 +4,7 @@ mod knobs;
 mod table;
 
 use crate::arguments::Readings as Arguments;
-use crate::fit::INTERRUPTED;
+use crate::fit_report::INTERRUPTED;
 use crate::input::{self, about};
 use crate::interrupt::{self, Interrupt};
 use crate::mapper::Stride;

@@ -3,23 +3,41 @@
 use crate::explore::Task;
 use crate::partial;
 use crate::pictures::Pictures;
+use crate::reliability_charts;
 use anyhow::Result;
 use covmap::{Cell, CoverageMap};
 use covmap_explore::{CutOff, Run, Summary, Truth};
+use covmap_fit::{ExampleScore, Reliability};
 use covmap_io::{
     MapCounts, MapThresholds, OutputFolder, Replace, save_map_server, write_file, write_json,
 };
+use serde::Serialize;
+use std::path::PathBuf;
 
-/// Writes a map: the whole posterior, and what is safe to know of it for map_server.
+/// What `summary.json` holds of an exploration.
+#[derive(Serialize)]
+pub(crate) struct Written {
+    #[serde(flatten)]
+    pub(crate) summary: Summary,
+    /// How well the map explains the cells that were measured, class by class; of solid cells the
+    /// first layer.
+    pub(crate) measured: ExampleScore,
+    /// The read-out through which all scores are, if there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) read_out: Option<PathBuf>,
+}
+
+/// Writes a map: the whole posterior as it is, and what is safe to know of it, as it is `read`, for
+/// map_server.
 pub(crate) fn write_map(
     folder: &OutputFolder,
-    map: &CoverageMap,
+    (map, read): (&CoverageMap, &CoverageMap),
     thresholds: &MapThresholds,
     may_be_free: impl Fn(Cell) -> bool,
 ) -> Result<MapCounts> {
     let belief = folder.path("belief.bin");
     write_file(belief, &map.to_bytes(), Replace::Any)?;
-    Ok(save_map_server(folder.partial(), "map", map, thresholds, may_be_free)?)
+    Ok(save_map_server(folder.partial(), "map", read, thresholds, may_be_free)?)
 }
 
 /// A line of the report: what other software is told.
@@ -35,10 +53,11 @@ pub(crate) fn write(
     run: &Run,
     seconds: f64,
     hash: String,
-) -> Result<(Summary, MapCounts)> {
-    let Task { world, mission, seed, thresholds } = task;
+) -> Result<(Written, MapCounts)> {
+    let Task { world, mission, seed, thresholds, reader } = task;
     let truth = Truth::new(world, mission);
-    let score = truth.score(&run.map, &truth.scored_cells(world, mission, run));
+    let map = &*reader.read(&run.map)?;
+    let score = truth.score(map, &truth.scored_cells(world, mission, run));
     let summary = Summary::new(
         world.name(),
         &mission.config,
@@ -50,17 +69,31 @@ pub(crate) fn write(
     );
 
     let is_inside = |cell| mission.outside.get(cell) == Some(&false);
-    let counts = write_map(folder, &run.map, thresholds, is_inside)?;
-    let pictures = Pictures { mission, run, truth: &truth, summary: &summary };
+    let counts = write_map(folder, (&run.map, map), thresholds, is_inside)?;
+    let how = reader.in_words();
+    let pictures = Pictures { mission, run, map, how: &how, truth: &truth, summary: &summary };
     pictures.coverage().save(folder.path("coverage.png"))?;
     pictures.entropy().save(folder.path("entropy.png"))?;
     pictures.truth().save(folder.path("truth.png"))?;
     pictures.errors(&run.bumped_at).save(folder.path("errors.png"))?;
     pictures.occupancy()?.save(folder.path("occupancy.png"))?;
     pictures.certificate().save(folder.path("certificate.png"))?;
-    partial::figure(mission, run, &truth, &summary)?
+    partial::figure(mission, (run, map), &truth, &summary)?
         .save(folder.path("partial.svg"), folder.path("partial.png"))?;
+    let measured = measured(map, &truth);
+    let of = format!("{}, {} measured cells{how}", pictures.of(), measured.len());
+    reliability_charts::figure(&of, &[("", &Reliability::of(&measured))], map.bins())
+        .save(folder.path("reliability.svg"), folder.path("reliability.png"))?;
+    let measured = ExampleScore::of(measured.iter().map(|(p, truth)| (p, *truth)));
+    let written = Written { summary, measured, read_out: reader.file.clone() };
     // Last: whoever finds it finds all the others.
-    write_json(folder.path("summary.json"), &summary)?;
-    Ok((summary, counts))
+    write_json(folder.path("summary.json"), &written)?;
+    Ok((written, counts))
+}
+
+/// What a map says of the cells that were measured, and their truths.
+fn measured(map: &CoverageMap, truth: &Truth) -> Vec<(Vec<f64>, f64)> {
+    let coverage = |cell| truth.coverage.get(cell).copied().unwrap_or(1.0);
+    let cells = truth.measured_cells(map).into_iter();
+    cells.map(|cell| (map.histogram(cell).probabilities().to_vec(), coverage(cell))).collect()
 }

@@ -231,6 +231,50 @@ impl Axis {
     }
 }
 
+impl Axis {
+    /// All parameters of an update but the footprint's and the usable range, each in a box that is
+    /// wide enough for every fit so far.
+    pub fn all_of(update: &Update) -> Vec<Self> {
+        use Parameter as P;
+        let axes: &[(P, f64, f64)] = match update {
+            Update::Product(_) => &[
+                (P::GammaBase, 0.001, 1.0),
+                (P::GammaPerCellDistance, 0.001, 30.0),
+                (P::GammaPerRange, 0.001, 30.0),
+                (P::SigmaOutBase, 0.05, 0.25),
+                (P::SigmaOutPerCellDistance, 0.0, 0.1),
+                (P::SigmaOutPerRange, 0.0, 0.1),
+                (P::SigmaIn, 0.06, 0.6),
+                (P::Behind, 0.0, 0.4),
+                (P::NoEchoRange, 0.1, 3.0),
+                (P::NoEchoGamma, 0.05, 1000.0),
+                (P::Tempering, 0.05, 1.0),
+            ],
+            Update::Cause(_) => &[
+                (P::RangeTolerance, 0.005, 0.2),
+                (P::CellDepth, 0.8, 2.0),
+                (P::UnknownCoverage, 0.02, 1.0),
+                (P::Sharpness, 0.05, 3.0),
+                (P::Chance, 0.05, 50.0),
+                (P::FirstEcho, 0.0, 12.0),
+                (P::EndSigmaBase, 0.05, 0.6),
+                (P::EndSigmaPerCellDistance, 0.0, 0.3),
+                (P::Behind, 0.03, 0.6),
+                (P::BehindWeight, 0.02, 1.0),
+                (P::BehindSigma, 0.05, 1.0),
+                (P::FreeShare, 0.02, 1.0),
+                (P::FreeRange, 0.2, 6.0),
+                (P::FreeWidth, 0.2, 5.0),
+                (P::FreeSigma, 0.05, 0.3),
+                (P::Beyond, 0.0, 1.0),
+                (P::NoEchoRange, 0.1, 3.0),
+                (P::NoEchoShare, 0.0, 1.0),
+            ],
+        };
+        axes.iter().map(|&(parameter, from, to)| Self { parameter, from, to }).collect()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -291,6 +335,18 @@ mod tests {
                 assert_eq!(parameter.get(&parameters), Some(f64::from(value)), "{parameter:?}");
             }
             assert!(foreign.iter().all(|parameter| parameter.get(&parameters).is_none()));
+        }
+    }
+
+    #[test]
+    fn the_boxes_hold_what_is_shipped_and_name_each_parameter_once() {
+        for parameters in [ModelParameters::product(), ModelParameters::b21r()] {
+            let axes = Axis::all_of(&parameters.update);
+            assert_eq!(Axis::check(&axes), Ok(()));
+            for axis in axes {
+                let value = axis.parameter.get(&parameters).unwrap();
+                assert!((axis.from..=axis.to).contains(&value), "{axis:?} {value}");
+            }
         }
     }
 

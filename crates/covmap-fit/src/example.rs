@@ -1,6 +1,6 @@
 //! What the model is fitted to: scans, and the truth of a fixed set of cells.
 
-use covmap::{Cell, Change, CoverageMap, Grid};
+use covmap::{Cell, Change, CoverageMap, Grid, Histogram};
 use covmap_model::{Body, BodyEvent, ModelError, ModelParameters, SensorModel, integrate};
 use covmap_sonar::{Scan, SonarRing};
 
@@ -55,6 +55,18 @@ impl Example {
 
     pub(crate) fn map_of(&self, model: &SensorModel) -> Result<CoverageMap, ModelError> {
         self.map_by(model.parameters().bins, |map, scan| integrate(model, map, scan))
+    }
+
+    /// What a map says of each cell of the truth, and the truth: the posterior, uniform where
+    /// nothing is known and outside of the map.
+    pub fn cells_of(&self, map: &CoverageMap) -> Vec<(Vec<f64>, f64)> {
+        let posterior = |cell: Cell| match map.grid().index(cell) {
+            Some(_) => map.histogram(cell),
+            None => Histogram::uniform(map.bins()),
+        };
+        let cell =
+            |(cell, truth): &(Cell, f64)| (posterior(*cell).probabilities().to_vec(), *truth);
+        self.truth.iter().map(cell).collect()
     }
 
     /// The map after all scans and what happened to the body, in their order, if `take_in`

@@ -2,7 +2,7 @@
 
 use crate::search::{SearchSettings, higher, maximise, random_start};
 use crate::{
-    Axis, AxisError, Class, Example, ExampleScore, Method, Parameter, Update, score_method,
+    Axis, AxisError, ByClass, Class, Example, ExampleScore, Method, Parameter, Update, score_method,
 };
 use covmap_model::{ModelError, ModelParameters};
 use serde::{Deserialize, Serialize};
@@ -87,6 +87,23 @@ impl Weighting {
         let is_there = |class| score.get(Some(class)).cells > 0;
         let mean = self.mean(is_there, |class| Some(score.get(class).log_likelihood));
         mean.unwrap_or(0.0)
+    }
+
+    /// What each cell weighs, by its class; all of them together 1.
+    pub(crate) fn weights(
+        self,
+        cells: impl ExactSizeIterator<Item = Class> + Clone,
+    ) -> impl Iterator<Item = f64> {
+        #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
+        let share = |count: usize| 1.0 / count.max(1) as f64;
+        let of_class = ByClass::from_fn(|class| match (self, class) {
+            (_, None) => 0.0,
+            (Self::Cells, Some(_)) => share(cells.len()),
+            (Self::Classes, Some(class)) => share(cells.clone().filter(|c| *c == class).count()),
+        });
+        let each = move |class| *of_class.get(Some(class));
+        let total: f64 = cells.clone().map(each).sum();
+        cells.map(move |class| each(class) / total)
     }
 
     /// The mean of what `of` says of all cells (`None`) or of the classes that are there;

@@ -17,6 +17,7 @@
 //! assert_eq!(axis.parameter.get(&parameters), Some(0.5));
 //! ```
 
+mod ascent;
 mod axis;
 mod class;
 mod class_score;
@@ -24,6 +25,8 @@ mod compare;
 mod example;
 mod fitting;
 mod method;
+mod read_out;
+mod reliability;
 mod search;
 mod tuning;
 
@@ -36,5 +39,7 @@ pub use covmap::Class;
 pub use example::{BodyRecord, Example};
 pub use fitting::{Evaluation, FitError, FitSettings, Fitted, Profile, Weighting, fit, score};
 pub use method::{BetaCounting, Crm, LogOdds, Method, Update};
+pub use read_out::fit_read_out;
+pub use reliability::{EntropyBand, Reliability};
 pub use search::{SearchSettings, Step, maximise};
 pub use tuning::{MethodParameter, TuneError, TuneSettings, Tuned, score_method, tune};

@@ -77,7 +77,7 @@ pub enum Update {
 /// All methods see the same scans and cells, and those whose cells depend on others the same body
 /// evidence, by the same `footprint`, `usable_range`,
 /// `no_echo.range` and `behind` of `model`. Of the rest of `model` every method uses `bins`,
-/// the coverage map uses all, and the forward update the tempering.
+/// and the coverage map uses all.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Method {

@@ -45,6 +45,8 @@ pub enum MethodParameter {
     Prior,
     /// [`crate::Crm::spread`].
     Spread,
+    /// [`crate::Crm::tempering`].
+    CrmTempering,
 }
 
 impl MethodParameter {
@@ -68,6 +70,7 @@ impl MethodParameter {
             (Self::Prior, Update::Crm(crm)) => Some(&mut crm.prior),
             (Self::Prior, Update::CoverageWithPrior(prior)) => Some(prior),
             (Self::Spread, Update::Crm(crm)) => Some(&mut crm.spread),
+            (Self::CrmTempering, Update::Crm(crm)) => Some(&mut crm.tempering),
             _ => None,
         }
     }
@@ -126,7 +129,7 @@ impl Update {
                 (P::Lost, 0.01, 0.9),
                 (P::Prior, 0.01, 1.0),
                 (P::Spread, 0.0, 1.0),
-                (P::Model(Parameter::Tempering), 0.05, 1.0),
+                (P::CrmTempering, 0.05, 1.0),
                 (P::Model(Parameter::Behind), 0.0, 0.3),
             ],
         };

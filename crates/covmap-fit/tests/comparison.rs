@@ -235,7 +235,7 @@ proptest! {
         spread in 0.0..=1.0f64, prior in 0.001..=1.0f64, lost in 1e-6..=1.0f64, outlier in 1e-6..=1.0f64
     ) {
         let mut methods = methods();
-        let crm = Crm { range_noise: 0.01, outlier, lost, prior, spread };
+        let crm = Crm { range_noise: 0.01, outlier, lost, prior, spread, tempering: 0.7 };
         methods[0].raw.update = Update::Crm(crm);
         for Contender { raw: method, name, .. } in methods {
             let posteriors = method.posteriors(&example).unwrap();

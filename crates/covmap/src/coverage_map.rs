@@ -247,7 +247,7 @@ impl CoverageMap {
         Some(Change { cell, before, after: f64::from(self.entropy[index]) })
     }
 
-    fn refresh(&mut self, index: usize) {
+    pub(crate) fn refresh(&mut self, index: usize) {
         let p = &self.posterior[index * self.bins..(index + 1) * self.bins];
         self.entropy[index] = entropy(p);
         #[allow(clippy::cast_possible_truncation, reason = "at most 64 bins")]

@@ -31,6 +31,7 @@ mod histogram;
 pub mod lanes;
 mod proper_score;
 mod raster;
+mod read_out;
 mod scored;
 mod short;
 mod steps;
@@ -46,6 +47,7 @@ pub use proper_score::{
     randomised_pit,
 };
 pub use raster::Raster;
+pub use read_out::{READ_OUT_FLOOR, ReadOut, ReadOutError};
 pub use scored::is_scored;
 pub use short::short;
 pub use steps::{STEPS, Steps, neighbour, opposite, step_between};

@@ -85,7 +85,8 @@ impl Pictured<'_> {
             0.0,
             String::new(),
         );
-        let pictures = Pictures { mission, run, truth: &truth, summary: &summary };
+        let pictures =
+            Pictures { mission, run, map: &run.map, how: "", truth: &truth, summary: &summary };
         if occupancy { pictures.occupancy() } else { Ok(pictures.coverage()) }
     }
 }

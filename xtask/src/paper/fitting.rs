@@ -2,7 +2,7 @@
 
 use super::session::Session;
 use crate::fit;
-use crate::fit_file::{FitFile, Source, examples};
+use crate::fit_file::{FitPlan, Source};
 use crate::progress::Progress;
 use anyhow::Result;
 use covmap_explore::statistics::{Estimate, Grouped, bootstrap};
@@ -34,11 +34,13 @@ pub(crate) struct Fitting {
 impl Fitting {
     /// Fits what a file for `fit` says, with one short search.
     pub(crate) fn measure(path: &Path, session: &Session<'_>) -> Result<Self> {
-        let (mut file, mut config, name) = FitFile::read(path)?;
+        let mut plan = FitPlan::read(path)?;
+        let file = &mut plan.file;
         file.starts = 1;
         file.evaluations = if session.quick { QUICK_EVALUATIONS } else { EVALUATIONS };
         if session.quick {
-            config.resolution = QUICK_SIDE;
+            plan.begin.config.resolution = QUICK_SIDE;
+            plan.explorer.config.resolution = QUICK_SIDE;
             let shorten = |source: &mut Source| {
                 if let Source::Simulated(simulated) = source {
                     let scans = simulated.scans.unwrap_or(QUICK_SCANS);
@@ -49,11 +51,10 @@ impl Fitting {
             file.training.iter_mut().chain(&mut file.held_out).for_each(shorten);
         }
         let mut progress = Progress::new(session.quiet);
-        let made = |sources: &[Source]| {
-            examples(sources, path, (&config, &name), (&progress, session.interrupt))
-        };
+        let (file, config) = (&plan.file, &plan.begin.config);
+        let made = |sources: &[Source]| plan.examples(sources, (&progress, session.interrupt));
         let (training, held_out) = (made(&file.training)?, made(&file.held_out)?);
-        let fitted = fit::search(&file, &config, &training, &mut progress, session.interrupt)?;
+        let fitted = fit::search(file, config, &training, &mut progress, session.interrupt)?;
         progress.finish();
         let difference = |example: &Example| -> Result<f64> {
             let example = std::slice::from_ref(example);

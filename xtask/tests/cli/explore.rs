@@ -4,7 +4,7 @@ use crate::typed::{Shell, shipped, short_run};
 use covmap::CoverageMap;
 use covmap_io::{MapCell, MapServerMap, load_map_server};
 
-const FILES: [&str; 13] = [
+const FILES: [&str; 15] = [
     "summary.json",
     "trace.jsonl",
     "belief.bin",
@@ -18,8 +18,10 @@ const FILES: [&str; 13] = [
     "partial.png",
     "partial.svg",
     "certificate.png",
+    "reliability.svg",
+    "reliability.png",
 ];
-const KEYS: [&str; 25] = [
+const KEYS: [&str; 26] = [
     "world",
     "strategy",
     "update",
@@ -45,6 +47,7 @@ const KEYS: [&str; 25] = [
     "capped_cells",
     "seconds",
     "trace_hash",
+    "measured",
 ];
 
 #[test]

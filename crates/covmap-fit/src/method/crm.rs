@@ -10,8 +10,6 @@ use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// The parameters of the forward update.
-///
-/// Its evidence is tempered by the exponent of the sensor model, as ours is.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Crm {
@@ -27,26 +25,36 @@ pub struct Crm {
     /// How a cell's share of its ring counts, an exponent: with 0 any full cell of a ring
     /// stops the beam, with 1 it does so with the cell's share of the ring's width.
     pub spread: f64,
+    /// Exponent ≤ 1 on the evidence of one reading, as that of Eq. (9).
+    pub tempering: f64,
 }
 
 impl Default for Crm {
-    /// 5 cm, 5 % outliers, 20 % lost; a prior with half of its mass at 0; spread ½.
+    /// 5 cm, 5 % outliers, 20 % lost; a prior with half of its mass at 0; spread and tempering ½.
     fn default() -> Self {
-        Self { range_noise: 0.05, outlier: 0.05, lost: 0.2, prior: 0.5, spread: 0.5 }
+        Self {
+            range_noise: 0.05,
+            outlier: 0.05,
+            lost: 0.2,
+            prior: 0.5,
+            spread: 0.5,
+            tempering: 0.5,
+        }
     }
 }
 
 impl Crm {
     /// # Errors
     /// If a parameter is not in its interval: noise [1e-3, 10] m, outlier and lost
-    /// [1e-6, 1], prior [1e-3, 1], spread [0, 1].
+    /// [1e-6, 1], prior [1e-3, 1], spread [0, 1], tempering [1e-3, 1].
     pub(crate) fn validate(&self) -> Result<(), ModelError> {
         let within = ModelError::within;
         within("crm.range_noise", self.range_noise, 1e-3, 10.0)?;
         within("crm.outlier", self.outlier, 1e-6, 1.0)?;
         within("crm.lost", self.lost, 1e-6, 1.0)?;
         within("crm.prior", self.prior, 1e-3, 1.0)?;
-        within("crm.spread", self.spread, 0.0, 1.0)
+        within("crm.spread", self.spread, 0.0, 1.0)?;
+        within("crm.tempering", self.tempering, 1e-3, 1.0)
     }
 
     /// Integrates a scan into a map: each beam is explained by the map as it was before it, so
@@ -93,9 +101,7 @@ impl Crm {
         rings: &mut Rings,
         outcome: Outcome,
     ) -> Vec<Change> {
-        let update = &model.parameters().update;
-        let tempering = update.product().map_or(1.0, |product| product.tempering);
-        let bins = map.bins();
+        let (bins, tempering) = (map.bins(), self.tempering);
         let keep = self.keep(map, rings);
         let heard = |k: usize| self.heard(outcome, ring_distance(k, model.resolution()));
         let onwards = self.onwards(&keep, outcome, heard);
