@@ -91,8 +91,10 @@ pub(crate) fn run(arguments: &Bench) -> Result<ExitCode> {
     let mut table = one_core.install(|| -> Result<Table> {
         let mut table = Table::default();
         if wanted(Rows::Decisions) {
-            decisions::small(&bench, &mut table)?;
-            decisions::large(&bench, &mut table)?;
+            for update in decisions::updates(&config) {
+                decisions::small(&bench, &update, &mut table)?;
+                decisions::large(&bench, &update, &mut table)?;
+            }
         }
         if wanted(Rows::Integrating) {
             integrating::compare(&bench, &mut table)?;
@@ -106,7 +108,9 @@ pub(crate) fn run(arguments: &Bench) -> Result<ExitCode> {
         Ok(table)
     })?;
     if wanted(Rows::Decisions) {
-        decisions::office(&bench, &mut table)?;
+        for update in decisions::updates(&config) {
+            decisions::office(&bench, &update, &mut table)?;
+        }
     }
     progress.finish();
     table.to_string().lines().for_each(say::line);

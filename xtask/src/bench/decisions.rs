@@ -16,6 +16,17 @@ const SPACING: f64 = 1.5;
 /// … and lie in the lower part of it.
 const EXPLORED: f64 = 0.7;
 
+/// The configuration with each of the updates, each by its name; the parameters of the other one
+/// are those that were fitted.
+pub(super) fn updates(config: &Config) -> [(&'static str, Config); 2] {
+    let with = |model| Config { model, ..config.clone() };
+    let model = || config.model.clone();
+    [
+        ("by cause", with(model().with_cause(|_| ()))),
+        ("by Eq. (9)", with(model().with_product(|_| ()))),
+    ]
+}
+
 /// The configuration with the strategy IG.
 fn with_gain(config: &Config) -> Config {
     let mut config = config.clone();
@@ -42,11 +53,16 @@ pub(super) fn explored(world: &World, config: &Config, scans: usize) -> Result<(
     Ok((mission, run))
 }
 
-/// Every E\[I\] of the small map, and the decisions from them.
-pub(super) fn small(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
-    let Measuring { config, extent, progress } = bench;
+/// Every E\[I\] of the small map, and the decisions from them. The configuration's update is called
+/// by its name.
+pub(super) fn small(
+    bench: &Measuring<'_>,
+    (update, config): &(&str, Config),
+    table: &mut Table,
+) -> Result<()> {
+    let Measuring { extent, progress, .. } = bench;
     let side = extent.small;
-    progress.say(&format!("{side} × {side} cells: exploring a part of it …"));
+    progress.say(&format!("{side} × {side} cells {update}: exploring a part of it …"));
     let world = tiles::offices(side, config.sonar.surface)?;
     let (mission, run) = explored(&world, &with_gain(config), extent.scans)?;
     let for_ever = for_ever(config);
@@ -75,14 +91,14 @@ pub(super) fn small(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
     let records = situation.planner.clone().candidate_table(situation.at);
     let after = compare(&situation, &records, extent.sample.min(20))?;
 
-    let cells = format!("{side} × {side} cells");
+    let cells = format!("{side} × {side} cells {update}");
     let against = format!("literal f64, {} of {} cells", before.sample, before.of);
     let mut row = |what: String, ours: f64, target: f64| {
         table.row(Row { what, ours, against: against.clone(), other: oracle, target });
     };
     row(format!("E[I] at every reachable cell of {cells}, nothing cached"), median(&all), 1e3);
     row(format!("the whole IG decision on {cells}, nothing cached"), median(&choosing), 1e3);
-    row(format!("the next decision on {cells}, after one more scan"), median(&next.seconds), 1e4);
+    row(format!("the next decision on {cells}, after one more scan"), median(&next.seconds), 5e3);
     table.note(format!(
         "{cells}: largest difference from the literal E[I], in units of the largest |E[I]|: {:.1e} \
          before, {:.1e} after {} decisions, by the literal equations at {:.1} view-points each \
@@ -97,10 +113,14 @@ pub(super) fn small(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
 }
 
 /// The cold decision of the large map, and the next ones.
-pub(super) fn large(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
-    let Measuring { config, extent, progress } = bench;
+pub(super) fn large(
+    bench: &Measuring<'_>,
+    (update, config): &(&str, Config),
+    table: &mut Table,
+) -> Result<()> {
+    let Measuring { extent, progress, .. } = bench;
     let side = extent.large;
-    progress.say(&format!("{side} × {side} cells: measuring in a part of it …"));
+    progress.say(&format!("{side} × {side} cells {update}: measuring in a part of it …"));
     let world = tiles::offices(side, config.sonar.surface)?;
     let limits = Limits { while_driving: None, max_scans: None };
     let mission = Mission::new(&world, config, None, limits)?;
@@ -110,13 +130,13 @@ pub(super) fn large(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
         situation.visit(point);
     }
     situation.visit(mission.start.translation.vector.into());
-    progress.say(&format!("{side} × {side} cells: deciding …"));
+    progress.say(&format!("{side} × {side} cells {update}: deciding …"));
     let (cold, decision) = situation.choose();
     let decision = decision.context("nothing to decide")?;
     let candidates = decision.candidates;
     let next = decide(&mut situation, decision, extent.large_decisions)?;
     table.row(Row {
-        what: format!("the next decision on {side} × {side} cells, after one more scan"),
+        what: format!("the next decision on {side} × {side} cells {update}, after one more scan"),
         ours: median(&next.seconds),
         against: format!("its own cold one, {candidates} cells"),
         other: cold,
@@ -189,9 +209,13 @@ fn compare(
 }
 
 /// How long decisions take in the shipped office, on as many threads as there are.
-pub(super) fn office(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
-    let Measuring { config, extent, progress } = bench;
-    progress.say("decisions in the office …");
+pub(super) fn office(
+    bench: &Measuring<'_>,
+    (update, config): &(&str, Config),
+    table: &mut Table,
+) -> Result<()> {
+    let Measuring { extent, progress, .. } = bench;
+    progress.say(&format!("decisions in the office {update} …"));
     let world = tiles::office(config.sonar.surface)?;
     let (mission, run) = explored(&world, config, extent.scans.min(40))?;
     let config = with_gain(config);
@@ -201,7 +225,7 @@ pub(super) fn office(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
     let decision = decision.context("nothing to decide")?;
     let next = decide(&mut situation, decision, extent.office_decisions)?;
     table.note(format!(
-        "an IG decision in the office at r = 0.1 m, after a scan, on {} threads: median {}, 99th \
+        "an IG decision in the office {update} at r = 0.1 m, after a scan, on {} threads: median {}, 99th \
          percentile {} ({} decisions; {:.1} view-points each by the literal equations)",
         rayon::current_num_threads(),
         duration(median(&next.seconds)),
