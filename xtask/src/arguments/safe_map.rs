@@ -11,8 +11,8 @@ const OCCUPIED: f64 = 0.5;
 /// The thresholds of map.pgm; by default the planner's.
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct SafeMap {
-    /// In map.pgm, a cell with a larger entropy is unknown, in nats [default:
-    /// planner.entropy_threshold of the configuration]
+    /// In map.pgm, a cell with a larger entropy is unknown, in nats [default: not free above
+    /// planner.entropy_threshold of the configuration; occupied if that is most likely]
     #[arg(long, value_name = "NATS", value_parser = entropy)]
     pub(crate) map_entropy: Option<f64>,
     /// In map.pgm, a cell with at most this coverage is free [default:
@@ -28,6 +28,7 @@ impl SafeMap {
     pub(crate) fn thresholds(&self, planner: &PlannerParameters) -> MapThresholds {
         MapThresholds {
             entropy: self.map_entropy.unwrap_or(planner.entropy_threshold),
+            occupied_entropy: self.map_entropy.unwrap_or(f64::INFINITY),
             free: self.map_free.unwrap_or(planner.traversable_coverage),
             occupied: self.map_occupied.unwrap_or(OCCUPIED),
         }

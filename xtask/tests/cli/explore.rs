@@ -257,9 +257,11 @@ fn what_leaves_for_other_software_is_safe() {
         unsure += usize::from(belief.is_known(here) && !resolved);
         let expected = match *read {
             MapCell::Occupancy(p) if p < 0.5 => (0, resolved && mode <= 0.2 && is_inside),
-            MapCell::Occupancy(_) => (1, resolved && mode >= 0.5),
+            // What is most likely in the way is an obstacle, unless that says next to nothing.
+            MapCell::Occupancy(_) => (1, belief.is_known(here) && mode >= 0.5 && entropy <= 2.28),
             // Beyond the lab, 6 m × 4.5 m, nothing is free.
-            MapCell::Unknown => (2, !resolved || mode < 0.5 && (mode > 0.2 || !is_inside)),
+            MapCell::Unknown if mode >= 0.5 => (2, !belief.is_known(here) || entropy > 2.27),
+            MapCell::Unknown => (2, !resolved || mode > 0.2 || !is_inside),
         };
         found[expected.0] += 1;
         assert!(expected.1, "{here:?} is {read:?}: {mode} {entropy}");
@@ -280,7 +282,8 @@ fn thresholds_of_the_map_are_options_and_the_files_name_them() {
     let default = "# free (254): known, entropy <= 0.6 nats, most likely coverage <= 0.2\n";
     assert!(yaml().contains(default), "{}", yaml());
     let loose = counts("--map-entropy 1.1");
-    assert!(loose[0] > usual[0] && loose[1] > usual[1] && loose[2] < usual[2], "{loose:?}");
+    // Whoever asks for an entropy asks for obstacles that are so certain, too.
+    assert!(loose[0] > usual[0] && loose[1] < usual[1], "{loose:?}");
     let strict = counts("--map-entropy 0.3 --map-free 0.1 --map-occupied 0.9");
     assert!(strict[0] < usual[0] && strict[2] > usual[2], "{strict:?}");
     for line in [

@@ -9,8 +9,11 @@ use std::path::Path;
 /// When a cell is free or occupied for other software; all else is unknown to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapThresholds {
-    /// Above this entropy a cell is unknown \[nats\].
+    /// Above this entropy a cell is not free \[nats\].
     pub entropy: f64,
+    /// Above this entropy a cell is not occupied \[nats\]. What is most likely in the way is
+    /// better taken for an obstacle, however uncertain it is: infinite, unless somebody asks.
+    pub occupied_entropy: f64,
     /// Up to this coverage, the most likely one, a cell is free.
     pub free: f64,
     /// From this coverage on, the most likely one, a cell is occupied, even if it is not above
@@ -34,7 +37,7 @@ const UNKNOWN: u8 = 205;
 const FREE: u8 = 254;
 
 impl MapThresholds {
-    /// The largest entropy of a cell that is free or occupied, in a map of n bins \[nats\]:
+    /// The largest entropy of a cell that is free, in a map of n bins \[nats\]:
     /// `entropy`, but at most ½ ln n. There a posterior is as wide as a uniform one over √n
     /// bins: a cell above that rests on next to nothing, whatever `entropy` says.
     pub fn largest_entropy(&self, bins: usize) -> f64 {
@@ -43,23 +46,39 @@ impl MapThresholds {
         self.entropy.min(next_to_nothing)
     }
 
+    /// The largest entropy of a cell that is occupied \[nats\]: `occupied_entropy`, but at most
+    /// .95 ln n, for a posterior that is all but uniform says nothing.
+    pub fn largest_occupied_entropy(&self, bins: usize) -> f64 {
+        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
+        let all_but_uniform = 0.95 * libm::log(bins as f64);
+        self.occupied_entropy.min(all_but_uniform)
+    }
+
     fn grey(&self, map: &CoverageMap, cell: Cell, may_be_free: bool) -> u8 {
         let is_resolved = map.entropy(cell) <= self.largest_entropy(map.bins());
         match map.mode(cell) {
-            _ if !(map.is_known(cell) && is_resolved) => UNKNOWN,
-            mode if mode >= self.occupied => OCCUPIED,
-            mode if mode <= self.free && may_be_free => FREE,
+            _ if !map.is_known(cell) => UNKNOWN,
+            mode if mode >= self.occupied => {
+                if map.entropy(cell) <= self.largest_occupied_entropy(map.bins()) {
+                    OCCUPIED
+                } else {
+                    UNKNOWN
+                }
+            }
+            mode if mode <= self.free && may_be_free && is_resolved => FREE,
             _ => UNKNOWN,
         }
     }
 
     /// What it was that made cells free and occupied, a line each.
     fn in_words(&self, map: &CoverageMap) -> String {
-        let entropy = (1e4 * self.largest_entropy(map.bins())).round() / 1e4;
+        let rounded = |entropy: f64| (1e4 * entropy).round() / 1e4;
+        let entropy = rounded(self.largest_entropy(map.bins()));
+        let occupied = rounded(self.largest_occupied_entropy(map.bins()));
         format!(
             "covmap, {} m a pixel\n\
              free (254): known, entropy <= {entropy} nats, most likely coverage <= {}\n\
-             occupied (0): known, entropy <= {entropy} nats, most likely coverage >= {}\n\
+             occupied (0): known, entropy <= {occupied} nats, most likely coverage >= {}\n\
              unknown (205): all else",
             map.grid().resolution(),
             self.free,
@@ -76,7 +95,8 @@ impl MapThresholds {
 /// free       grey 254   the cell is known, its entropy at most `entropy` (and ½ ln n),
 ///                       its most likely coverage at most `free`, and it `may_be_free`:
 ///                       beyond the extent of what was explored nothing is
-/// occupied   grey 0     the same, but its most likely coverage at least `occupied`
+/// occupied   grey 0     the cell is known, its entropy at most `occupied_entropy`, and its most
+///                       likely coverage at least `occupied`
 /// unknown    grey 205   all else: (255 − 205)/255 = .196078 > .196, the `free_thresh`
 /// ```
 ///
@@ -129,7 +149,8 @@ mod tests {
     use nalgebra::Point2;
     use proptest::prelude::*;
 
-    const THRESHOLDS: MapThresholds = MapThresholds { entropy: 0.6, free: 0.2, occupied: 0.5 };
+    const THRESHOLDS: MapThresholds =
+        MapThresholds { entropy: 0.6, occupied_entropy: 0.6, free: 0.2, occupied: 0.5 };
 
     /// A map of 11 bins, a row of cells, each with this share of its probability in one bin and
     /// the rest spread over all others; `None` is a cell that nothing touched.
@@ -174,7 +195,7 @@ mod tests {
         let (greys, counts) = save(&map, &THRESHOLDS);
         assert_eq!(greys, [205, 254, 205, 254, 205, 205, 0, 0, 205]);
         assert_eq!(counts, MapCounts { free: 2, occupied: 2, unknown: 5 });
-        let loose = MapThresholds { entropy: 0.7, free: 0.3, occupied: 1.0 };
+        let loose = MapThresholds { entropy: 0.7, occupied_entropy: 0.7, free: 0.3, occupied: 1.0 };
         assert_eq!(save(&map, &loose).0, [205, 254, 254, 254, 254, 205, 205, 0, 0]);
     }
 
@@ -198,7 +219,8 @@ mod tests {
     #[test]
     fn both_files_say_which_thresholds_were_used() {
         let folder = tempfile::tempdir().unwrap();
-        let thresholds = MapThresholds { entropy: 0.45, free: 0.1, occupied: 0.75 };
+        let thresholds =
+            MapThresholds { entropy: 0.45, occupied_entropy: 0.45, free: 0.1, occupied: 0.75 };
         save_map_server(folder.path(), "map", &row_of(&[None]), &thresholds, |_| true).unwrap();
         for name in ["map.pgm", "map.yaml"] {
             let file = std::fs::read(folder.path().join(name)).unwrap();
