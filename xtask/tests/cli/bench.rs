@@ -14,10 +14,14 @@ fn every_comparison_is_printed() {
         .collect();
     assert_eq!(rows[0], ["what", "ours", "against", "ratio", "target", ""]);
     let expected = [
-        "E[I] at every reachable cell",
-        "the whole IG decision",
-        "the next decision on 100 × 100",
-        "the next decision on 200 × 200",
+        "E[I] at every reachable cell of 100 × 100 cells by cause",
+        "the whole IG decision on 100 × 100 cells by cause",
+        "the next decision on 100 × 100 cells by cause",
+        "the next decision on 200 × 200 cells by cause",
+        "E[I] at every reachable cell of 100 × 100 cells by Eq. (9)",
+        "the whole IG decision on 100 × 100 cells by Eq. (9)",
+        "the next decision on 100 × 100 cells by Eq. (9)",
+        "the next decision on 200 × 200 cells by Eq. (9)",
         "integrate a scan of 24 beams, 11 bins",
         "integrate a scan of 24 beams, 16 bins",
         "a distance field",
