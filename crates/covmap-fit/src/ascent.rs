@@ -114,8 +114,8 @@ mod tests {
                 value -= (k * k * k * k) * (x - k) * (x - k);
                 *g = -2.0 * (k * k * k * k) * (x - k);
             }
-            gradient[0] -= 4.0 * bend.powi(3);
-            gradient[1] -= 4.0 * bend.powi(3);
+            gradient[0] -= 4.0 * (bend * bend * bend);
+            gradient[1] -= 4.0 * (bend * bend * bend);
             (value, gradient)
         }
     }
