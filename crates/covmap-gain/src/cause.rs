@@ -36,11 +36,11 @@ use crate::view_points::groups_per_row;
 use crate::{InformationGain, Stencil, evidence::Evidence};
 use beam::CauseBeam;
 use causes::GroupCauses;
-use ceilings::Ceilings;
+use ceilings::{Bands, Ceilings, Said};
 use covmap::Grid;
-use covmap::lanes::{LANES, Lanes};
+use covmap::lanes::{LANES, Lanes, add_product};
 use covmap_model::{CauseParameters, ModelParameters, SensorModel, gaussian, opaque};
-use ends::{AtEnd, Kernel};
+use ends::AtEnd;
 use polynomials::Polynomials;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -59,7 +59,7 @@ pub(crate) struct Cause {
     front: Option<Polynomials>,
     /// B of every cell, over s; `None` likewise.
     behind: Option<Polynomials>,
-    /// Of the cells at the end; `None` without bounds.
+    /// `None` without bounds.
     ceilings: Option<Ceilings>,
     /// Bordered: E\[c\]^p.
     surface: Vec<f32>,
@@ -78,7 +78,6 @@ impl Cause {
     ) -> Self {
         let ModelParameters { bins, .. } = *model.parameters();
         let (p, r) = (parameters, model.resolution());
-        let beam = |beam| CauseBeam::new((p, r, bins), beam, stencil, belief.raster_width());
         let (free, covered) = ((0.0, p.free.sigma), (1.0, p.sigma_behind));
         #[allow(clippy::cast_precision_loss, reason = "at most 16 bearings")]
         let all = p.bearings as f64;
@@ -90,24 +89,28 @@ impl Cause {
         };
         let (front, behind) = (polynomials(free, most_passed), polynomials(covered, most_behind));
         let usable = model.parameters().usable_range;
-        let kernels = kernels_at_the_end((p.sigma_in.at(0.0, 0.0), p.sigma_in.at(usable, usable)));
+        let bands = Bands::new(p.sigma_in.at(0.0, 0.0), p.sigma_in.at(usable, usable));
+        let at_end = AtEnd::new(p, bins, (most_ended, all / (all + p.chance)));
+        let width = belief.raster_width();
+        let beam = |beam| CauseBeam::new((p, r, &at_end), (&bands, beam, stencil), width);
+        let beams = stencil.beams.iter().map(beam).collect();
+        let says = |kernel: (f64, f64)| -> Said<'_> {
+            Box::new(move |share| evidence(bins, kernel, share))
+        };
         let ceilings = || {
-            Ceilings::new(
-                grid,
-                (most_ended, most_passed),
-                kernels.len(),
-                |kernel, share| evidence(bins, kernels[kernel], share),
-                |share| evidence(bins, free, share),
-            )
+            let of_band =
+                |band| (most_ended, bands.kernels(band).into_iter().map(says).collect::<Vec<_>>());
+            let [a, b, c] = std::array::from_fn(of_band);
+            let (passed, behind) = (vec![says(free)], vec![says(covered)]);
+            Ceilings::new(grid, [a, b, c, (most_passed, passed), (most_behind, behind)])
         };
         let cells = belief.expected().len();
         Self {
             parameters: p.clone(),
             grid,
-            beams: stencil.beams.iter().map(beam).collect(),
-            at_end: AtEnd::new(p, bins),
-            // Without polynomials a bound would cost as much as a gain.
-            ceilings: (with_bounds && front.is_some() && behind.is_some()).then(ceilings),
+            beams,
+            at_end,
+            ceilings: with_bounds.then(ceilings),
             front,
             behind,
             surface: vec![0.0; cells],
@@ -200,13 +203,6 @@ fn evidence(bins: usize, (mu, sigma): (f64, f64), share: f64) -> Evidence {
     Evidence::of(t)
 }
 
-/// μ and σ of kernels that stand for all at the end.
-fn kernels_at_the_end((least, most): (f64, f64)) -> Vec<(f64, f64)> {
-    let sigmas = [least, 0.5 * (least + most), most];
-    let mu = |i: u32| 0.1 * f64::from(i);
-    sigmas.into_iter().flat_map(|sigma| (0..=10).map(move |i| (mu(i), sigma))).collect()
-}
-
 /// The gains of one row.
 struct GainsOfRow<'a> {
     cause: &'a Cause,
@@ -277,7 +273,10 @@ impl GroupSum<'_> {
             };
             fronts.push(Front { cells, probability: *probability, any });
         }
-        self.add_front(&mut gain, beam, fronts);
+        match &cause.ceilings {
+            Some(ceilings) if !EXACT => self.add_front_bounds(&mut gain, beam, (fronts, ceilings)),
+            _ => self.add_front(&mut gain, beam, fronts),
+        }
         gain
     }
 
@@ -290,31 +289,57 @@ impl GroupSum<'_> {
         causes: &GroupCauses<'_>,
         probability: &Lanes,
     ) {
-        let at_end = &self.cause.at_end;
         let mut sum = [0.0; LANES];
+        match &self.cause.ceilings {
+            Some(ceilings) if !EXACT => {
+                self.add_end_bounds(&mut sum, (beam, end), causes, ceilings);
+            }
+            _ => self.add_end_gains(&mut sum, (beam, end), causes),
+        }
+        add_product(gain, probability, &sum);
+    }
+
+    #[inline(always)]
+    fn add_end_gains(
+        &self,
+        sum: &mut Lanes,
+        (beam, end): (&CauseBeam, &beam::End),
+        causes: &GroupCauses<'_>,
+    ) {
+        let at_end = &self.cause.at_end;
         for (cell, near) in beam.cells[end.front..end.ended].iter().zip(&beam.near[end.first..]) {
             let Some((y, x)) = self.place(cell) else { continue };
-            let ended = causes.ended(cell);
-            if let (false, Some(ceilings)) = (EXACT, &self.cause.ceilings) {
-                ceilings.add(&mut sum, (y, x), (ended, &causes.any), near.free);
-            } else {
-                let prior = self.belief.prior_at(y, x);
-                let kernel = Kernel { ended: &near.ended, weight: 1.0, free: near.free };
-                at_end.add(&mut sum, &prior, kernel, ended, &causes.any);
-            }
+            let prior = self.belief.prior_at(y, x);
+            let kernel = near.kernel();
+            at_end.add(sum, &prior, kernel, causes.ended(cell), &causes.any);
         }
-        let kernel = Kernel { ended: &at_end.behind, weight: beam.behind_weight, free: 0.0 };
+        let kernel = at_end.behind(beam.behind_weight);
         for cell in &beam.cells[end.ended..end.reach] {
             let Some((y, x)) = self.place(cell) else { continue };
             if let Some(behind) = &self.cause.behind {
-                behind.add(&mut sum, (y, x), causes.ended(cell), beam.behind_weight);
+                behind.add(sum, (y, x), causes.ended(cell), beam.behind_weight);
             } else {
                 let prior = self.belief.prior_at(y, x);
-                at_end.add(&mut sum, &prior, kernel, causes.ended(cell), &causes.any);
+                at_end.add(sum, &prior, kernel, causes.ended(cell), &causes.any);
             }
         }
-        for lane in 0..LANES {
-            gain[lane] += probability[lane] * sum[lane];
+    }
+
+    #[inline(always)]
+    fn add_end_bounds(
+        &self,
+        sum: &mut Lanes,
+        (beam, end): (&CauseBeam, &beam::End),
+        causes: &GroupCauses<'_>,
+        ceilings: &Ceilings,
+    ) {
+        for (cell, near) in beam.cells[end.front..end.ended].iter().zip(&beam.near[end.first..]) {
+            let Some(place) = self.place(cell) else { continue };
+            ceilings.add_end(sum, place, (causes.ended(cell), &causes.any), (near.band, near.free));
+        }
+        for cell in &beam.cells[end.ended..end.reach] {
+            let Some(place) = self.place(cell) else { continue };
+            ceilings.add_behind(sum, place, causes.ended(cell), beam.behind_weight);
         }
     }
 
@@ -350,6 +375,30 @@ impl GroupSum<'_> {
         }
     }
 
+    /// Adds the bounds of the cells in front of the ends of all outcomes.
+    #[inline(always)]
+    fn add_front_bounds(
+        &self,
+        bound: &mut Lanes,
+        beam: &CauseBeam,
+        (fronts, ceilings): (&mut [Front], &Ceilings),
+    ) {
+        fronts.sort_by_key(|front| std::cmp::Reverse(front.cells));
+        let (mut all, mut passed) = ([0.0; LANES], [0.0; LANES]);
+        for i in 0..fronts.len() {
+            let Front { cells, probability, any } = &fronts[i];
+            for lane in 0..LANES {
+                all[lane] += probability[lane];
+            }
+            add_product(&mut passed, probability, any);
+            let next = fronts.get(i + 1).map_or(0, |next| next.cells);
+            for cell in beam.cells[next..*cells].iter().filter(|cell| cell.free > 0.0) {
+                let Some(place) = self.place(cell) else { continue };
+                ceilings.add_front(bound, place, (&all, &passed), cell.free);
+            }
+        }
+    }
+
     /// Cell by cell for one outcome.
     #[inline(always)]
     fn add_each_front(&self, gain: &mut Lanes, beam: &CauseBeam, front: &Front) {
@@ -357,12 +406,10 @@ impl GroupSum<'_> {
         for cell in beam.cells[..front.cells].iter().filter(|cell| cell.free > 0.0) {
             let Some((y, x)) = self.place(cell) else { continue };
             let prior = self.belief.prior_at(y, x);
-            let kernel = Kernel { ended: &at_end.behind, weight: 0.0, free: cell.free };
+            let kernel = at_end.passed(cell.free);
             at_end.add(&mut sum, &prior, kernel, &[0.0; LANES], &front.any);
         }
-        for lane in 0..LANES {
-            gain[lane] += front.probability[lane] * sum[lane];
-        }
+        add_product(gain, &front.probability, &sum);
     }
 
     /// Row and column of a cell as the first view-point sees it; `None` if it is outside of

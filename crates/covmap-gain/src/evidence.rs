@@ -14,8 +14,9 @@
 
 use crate::belief::BlockPrior;
 use crate::numbers::to_f32;
-use covmap::lanes::{LANES, Lanes, ln, map};
+use covmap::lanes::{LANES, Lanes, add_scaled, ln, map};
 use covmap_model::{Outcome, SensorModel};
+use pulp::{Simd, WithSimd};
 
 /// p(c | d) of one cell, in f64: what tables are made from.
 #[derive(Debug, Clone)]
@@ -85,16 +86,34 @@ impl ExcessEvidence {
         let (mut above, mut sum) = ([0.0f32; LANES], [0.0f32; LANES]);
         for (bin, (e, w)) in (self.first..).zip(&self.terms) {
             let (h, h_hat) = (prior.h(bin), prior.h_hat(bin));
-            for lane in 0..LANES {
-                above[lane] += h[lane] * e;
-                sum[lane] += h_hat[lane] * e + h[lane] * w;
-            }
+            add_scaled(&mut above, h, *e);
+            add_scaled(&mut sum, h_hat, *e);
+            add_scaled(&mut sum, h, *w);
         }
         let mut gain = gains(&sum, &above);
         for (gain, changeable) in gain.iter_mut().zip(prior.changeable) {
             *gain *= changeable;
         }
         gain
+    }
+}
+
+/// The gains of a block of cells by each of some readings, compiled for each kind of vector
+/// registers.
+pub(crate) struct BlockGains<'a> {
+    pub(crate) readings: &'a [ExcessEvidence],
+    pub(crate) prior: BlockPrior<'a>,
+    pub(crate) gains: &'a mut [Lanes],
+}
+
+impl WithSimd for BlockGains<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) {
+        for (gain, reading) in self.gains.iter_mut().zip(self.readings) {
+            *gain = reading.gain(&self.prior);
+        }
     }
 }
 
@@ -118,12 +137,21 @@ pub(crate) fn w<const N: usize>(e: &[f32; N]) -> [f32; N] {
     let mut out = [0.0; N];
     for i in 0..N {
         let e = e[i];
-        let tail = 1.0 / 20.0 - e * (1.0 / 30.0 - e * (1.0 / 42.0 - e * (1.0 / 56.0)));
-        let series = e * e * (0.5 - e * (1.0 / 6.0 - e * (1.0 / 12.0 - e * tail)));
         let far = z[i] * log[i] - (z[i] - 1.0);
-        out[i] = if e < 0.2 { series } else { far };
+        let series = few(e);
+        out[i] = if e < FEW { series } else { far };
     }
     out
+}
+
+/// Up to here the series of w is exact enough.
+pub(crate) const FEW: f32 = 0.2;
+
+/// w(e) by its series, for e up to [`FEW`].
+#[inline(always)]
+pub(crate) fn few(e: f32) -> f32 {
+    let terms = [1.0 / 42.0, -1.0 / 30.0, 1.0 / 20.0, -1.0 / 12.0, 1.0 / 6.0, -0.5];
+    -(e * e) * terms.iter().fold(-1.0f32 / 56.0, |sum, term| sum * e + term)
 }
 
 #[cfg(test)]

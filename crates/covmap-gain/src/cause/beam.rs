@@ -1,8 +1,10 @@
 //! What is the same of a beam from all view-points.
 
+use super::ceilings::Bands;
+use super::ends::{AtEnd, Kernel};
 use crate::numbers::to_f32;
 use crate::{BeamStencil, Stencil};
-use covmap_model::{CauseParameters, Outcome, gaussian};
+use covmap_model::{CauseParameters, Outcome};
 
 /// A cell of a beam.
 #[derive(Debug, Clone, Copy)]
@@ -25,23 +27,43 @@ pub(super) struct End {
     pub(super) front: usize,
     /// up to here it may lie in them,
     pub(super) ended: usize,
-    /// up to here they may have caused it,
-    pub(super) near: usize,
     /// and up to here they are behind it.
     pub(super) reach: usize,
     /// Where those from `front` on begin among the beam's `near`.
     pub(super) first: usize,
+    /// Where those that may have caused it begin and end among the beam's `surfaces`.
+    pub(super) surfaces: (usize, usize),
 }
 
 /// A cell as an echo may have ended in it.
 #[derive(Debug, Clone)]
 pub(super) struct NearEnd {
-    /// w(δ)^p.
-    pub(super) nearness: f32,
     /// f(d^l, θ) if the cell's centre is before the end, else 0.
     pub(super) free: f32,
-    /// N(μ, σ) of every bin; none of a cell that is behind the end.
+    /// N(μ, σ) of every bin.
     pub(super) ended: Vec<f32>,
+    /// In which of the bands of the ceilings σ is.
+    pub(super) band: usize,
+    /// A bit for every bin in which much may be said.
+    pub(super) large: u64,
+}
+
+impl NearEnd {
+    /// What the echo says of it.
+    pub(super) fn kernel(&self) -> Kernel<'_> {
+        Kernel { ended: &self.ended, weight: 1.0, free: self.free, large: self.large }
+    }
+}
+
+/// A cell as it may have caused an echo.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Surface {
+    /// m.
+    pub(super) bearing: usize,
+    /// From the view-point in the bordered rasters.
+    pub(super) offset: isize,
+    /// w(δ)^p.
+    pub(super) nearness: f32,
 }
 
 /// A beam from any view-point.
@@ -51,6 +73,8 @@ pub(super) struct CauseBeam {
     /// By the outcome's index.
     pub(super) ends: Vec<End>,
     pub(super) near: Vec<NearEnd>,
+    /// For each end, by their bearing.
+    pub(super) surfaces: Vec<Surface>,
     /// The first so many cells are passed if there is no echo.
     pub(super) no_echo: usize,
     /// b.
@@ -59,9 +83,8 @@ pub(super) struct CauseBeam {
 
 impl CauseBeam {
     pub(super) fn new(
-        (parameters, resolution, bins): (&CauseParameters, f64, usize),
-        beam: &BeamStencil,
-        stencil: &Stencil,
+        (parameters, resolution, at_end): (&CauseParameters, f64, &AtEnd),
+        (bands, beam, stencil): (&Bands, &BeamStencil, &Stencil),
         raster_width: usize,
     ) -> Self {
         let width = raster_width.cast_signed();
@@ -72,7 +95,8 @@ impl CauseBeam {
             bearing: parameters.bearing(c.across),
             free: to_f32(parameters.passed(c.met())),
         };
-        let mut all_near = Vec::new();
+        let cells: Vec<CauseCell> = beam.cells.iter().map(cell).collect();
+        let (mut all_near, mut all_surfaces) = (Vec::new(), Vec::new());
         let end = |(k, range): (usize, &f64)| {
             let delta = |c: &crate::StencilCell| c.cell_distance - range;
             let nearness = |c: &crate::StencilCell| parameters.nearness(resolution, delta(c));
@@ -82,25 +106,29 @@ impl CauseBeam {
             let front = up_to(&|c| delta(c) < 0.0 && nearness(c) <= 0.0);
             let ended = up_to(&|c| delta(c) <= 0.5 * resolution);
             let near = up_to(&|c| delta(c) < 0.0 || nearness(c) > 0.0);
-            let first = all_near.len();
-            for (i, c) in beam.cells.iter().enumerate().take(near).skip(front) {
+            let (first, first_surface) = (all_near.len(), all_surfaces.len());
+            for c in &beam.cells[front..ended.max(front)] {
                 let role = parameters.role(resolution, c.met(), Outcome::Echo(*range));
-                let mut ended_in = vec![0.0; if i < ended { bins } else { 0 }];
-                if i < ended {
-                    gaussian(role.mu, role.sigma, &mut ended_in);
-                }
-                all_near.push(NearEnd {
-                    nearness: to_f32(libm::pow(nearness(c), parameters.sharpness)),
-                    free: to_f32(role.free),
-                    ended: ended_in.into_iter().map(to_f32).collect(),
-                });
+                let (free, band) = (to_f32(role.free), bands.of(role.sigma));
+                let ended = at_end.kernel(role.mu, role.sigma);
+                let large = at_end.large(&ended, free);
+                all_near.push(NearEnd { free, ended, band, large });
             }
-            End { front, ended, near, reach: beam.echo_reach[k], first }
+            for (c, cell) in beam.cells.iter().zip(&cells).take(near).skip(front) {
+                let nearness = to_f32(libm::pow(nearness(c), parameters.sharpness));
+                let CauseCell { bearing, offset, .. } = *cell;
+                all_surfaces.push(Surface { bearing, offset, nearness });
+            }
+            all_surfaces[first_surface..].sort_by_key(|surface| surface.bearing);
+            let surfaces = (first_surface, all_surfaces.len());
+            End { front, ended, reach: beam.echo_reach[k], first, surfaces }
         };
+        let ends = stencil.ranges.iter().enumerate().map(end).collect();
         Self {
-            ends: stencil.ranges.iter().enumerate().map(end).collect(),
-            cells: beam.cells.iter().map(cell).collect(),
+            ends,
+            cells,
             near: all_near,
+            surfaces: all_surfaces,
             no_echo: beam.no_echo_reach,
             behind_weight: to_f32(parameters.behind_weight),
         }

@@ -1,7 +1,8 @@
 //! [`covmap_model::Causes`] of one beam from a group of view-points, side by side.
 
 use super::at;
-use super::beam::{CauseBeam, CauseCell, End};
+use super::beam::{CauseBeam, CauseCell, End, Surface};
+use crate::belief::lanes_at;
 use crate::numbers::{as_f64, to_f32};
 use covmap::lanes::{LANES, Lanes, exp, ln, map};
 use covmap_model::CauseParameters;
@@ -76,13 +77,18 @@ impl<'a> GroupCauses<'a> {
         let bearings = self.parameters.bearings;
         let ended = &mut self.ended[..bearings];
         ended.fill([0.0; LANES]);
-        let cells = beam.cells[end.front..end.near].iter().zip(&beam.near[end.first..]);
-        for (cell, near) in cells {
-            let (surface, likeliest) = (at(surface, here, cell), &mut ended[cell.bearing]);
-            for lane in 0..LANES {
-                let surface = near.nearness * surface[lane];
-                likeliest[lane] = if surface > likeliest[lane] { surface } else { likeliest[lane] };
+        let (begin, after) = end.surfaces;
+        for of_bearing in beam.surfaces[begin..after].chunk_by(|a, b| a.bearing == b.bearing) {
+            let mut likeliest = [0.0; LANES];
+            for Surface { offset, nearness, .. } in of_bearing {
+                let surface = lanes_at(surface, here.wrapping_add_signed(*offset));
+                for lane in 0..LANES {
+                    let surface = nearness * surface[lane];
+                    likeliest[lane] =
+                        if surface > likeliest[lane] { surface } else { likeliest[lane] };
+                }
             }
+            ended[of_bearing[0].bearing] = likeliest;
         }
         let (first, mut sum) = (self.first(), [0.0; LANES]);
         let ended = &mut self.ended[..bearings];

@@ -1,11 +1,11 @@
-//! Upper bounds of what is gained in a cell in which an echo may have ended: what a decision need not
-//! evaluate.
+//! Upper bounds of what is gained in a cell: what a decision need not evaluate.
 //!
-//! For every cell four numbers are kept: by the share s of "ended" the largest gain U, and the
-//! largest slope U', and the same, V and V', by the share g of "passed", such that
+//! For every cell pairs of numbers are kept: by the share s of "ended" the largest gain U, and the
+//! largest slope U', for each of [`BANDS`] of the width σ of what an echo says; the same by the
+//! share g of "passed", V and V'; and by that of "behind", W and W'. They are such that
 //!
 //! ```text
-//! I(s, g) ≤ MARGIN · (min(U, U'·s) + min(V, V'·g))
+//! G(g) ≤ min(V, V'·g)     I(s, g) ≤ min(U, U'·s) + min(V, V'·g)     B(s) ≤ min(W, W'·s)
 //! ```
 //!
 //! They are the largest gains, and parts of gain by share, of some kernels at some shares. That is
@@ -13,7 +13,7 @@
 //! their bounds, and a decision that meets one evaluates all of its candidates.
 
 use crate::belief::{Belief, PAD, lanes_at, padded};
-use crate::evidence::{Evidence, ExcessEvidence};
+use crate::evidence::{BlockGains, Evidence, ExcessEvidence};
 use crate::memory::Size;
 use crate::numbers::{as_f64, to_f32};
 use crate::view_points::groups_per_row;
@@ -25,85 +25,110 @@ use rayon::prelude::*;
 /// Gains at other shares and of other kernels may exceed those that are looked at by this.
 const MARGIN: f32 = 1.2;
 
-/// U, U', V and V'.
-const NUMBERS: usize = 4;
+/// Of the widths of kernels at the end.
+pub(super) const BANDS: usize = 3;
+
+/// The widths σ at which the bands begin and end.
+#[derive(Debug, Clone)]
+pub(super) struct Bands {
+    least: f64,
+    most: f64,
+}
+
+impl Bands {
+    /// Of the `least` and the `most` σ.
+    pub(super) fn new(least: f64, most: f64) -> Self {
+        Self { least, most }
+    }
+
+    /// Where a band begins; the last one ends where the next would begin.
+    fn begin(&self, band: usize) -> f64 {
+        self.least + (self.most - self.least) * as_f64(band) / as_f64(BANDS)
+    }
+
+    /// The band of a width.
+    pub(super) fn of(&self, sigma: f64) -> usize {
+        (1..BANDS).filter(|band| self.begin(*band) <= sigma).count()
+    }
+
+    /// μ and σ of kernels that stand for all of a band.
+    pub(super) fn kernels(&self, band: usize) -> Vec<(f64, f64)> {
+        let mu = |i: u32| 0.1 * f64::from(i);
+        let sigmas = [self.begin(band), self.begin(band + 1)];
+        sigmas.into_iter().flat_map(|sigma| (0..=10).map(move |i| (mu(i), sigma))).collect()
+    }
+}
+
+/// The pairs: by band of "ended", and of "passed" and "behind".
+const PASSED: usize = BANDS;
+const BEHIND: usize = BANDS + 1;
+const PAIRS: usize = BANDS + 2;
 
 /// The parts of the largest share that are looked at.
 const PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 
-/// U, U', V and V' of all cells.
+/// What a kernel says with a share.
+pub(super) type Said<'a> = Box<dyn Fn(f64) -> Evidence + 'a>;
+
+/// The readings that are looked at, and 1/share of each.
+#[derive(Debug, Clone)]
+struct Looked {
+    by_share: Vec<f32>,
+    readings: Vec<ExcessEvidence>,
+}
+
+/// These numbers of all cells.
 #[derive(Debug, Clone)]
 pub(super) struct Ceilings {
     grid: Grid,
-    /// 1/s and 1/g, with the readings.
-    ended: Vec<(f32, ExcessEvidence)>,
-    passed: Vec<(f32, ExcessEvidence)>,
-    /// By row, which of the four, and column, padded as histograms are.
+    /// By pair.
+    looked: [Looked; PAIRS],
+    /// By row, which number of which pair, and column, padded as histograms are.
     largest: Vec<f32>,
 }
 
 impl Ceilings {
-    /// `ended` says what a kernel of some number below `kernels` says with a share, `passed` what
-    /// "passed" says with a share.
-    pub(super) fn new(
-        grid: Grid,
-        (most_ended, most_passed): (f64, f64),
-        kernels: usize,
-        ended: impl Fn(usize, f64) -> Evidence,
-        passed: impl Fn(f64) -> Evidence,
-    ) -> Self {
-        let mut of_ended = Vec::new();
-        let mut of_passed = Vec::new();
-        for part in PARTS {
-            for kernel in 0..kernels {
-                let share = part * most_ended;
-                of_ended.push((to_f32(1.0 / share), ended(kernel, share).excess()));
-            }
-            let share = part * most_passed;
-            of_passed.push((to_f32(1.0 / share), passed(share).excess()));
-        }
-        Self {
-            grid,
-            ended: of_ended,
-            passed: of_passed,
-            largest: vec![0.0; grid.height() * NUMBERS * padded(grid.width())],
-        }
+    /// What the kernels of each pair say with a share, and the largest share of each.
+    pub(super) fn new(grid: Grid, said: [(f64, Vec<Said<'_>>); PAIRS]) -> Self {
+        let looked = said.map(|(most, said)| {
+            let shares = PARTS.iter().map(|part| part * most.max(1e-9));
+            let of_share = |share: f64| {
+                said.iter().map(move |said| (to_f32(1.0 / share), said(share).excess()))
+            };
+            let (by_share, readings) = shares.flat_map(of_share).unzip();
+            Looked { by_share, readings }
+        });
+        let largest = vec![0.0; grid.height() * 2 * PAIRS * padded(grid.width())];
+        Self { grid, looked, largest }
     }
 
     /// About how many bytes this takes.
     pub(super) fn bytes(size: &Size) -> f64 {
-        4.0 * as_f64(NUMBERS) * size.padded()
+        4.0 * as_f64(2 * PAIRS) * size.padded()
     }
 
     /// Takes over blocks of cells that changed, given in ascending order.
     pub(super) fn update(&mut self, arch: Arch, belief: &Belief, changed: &[usize]) {
         let (per_row, stride) = (groups_per_row(&self.grid), padded(self.grid.width()));
         let width = self.grid.width();
-        let Self { ended, passed, largest, .. } = self;
+        let Self { looked, largest, .. } = self;
         let place = |block: usize| changed.partition_point(|changed| *changed < block);
-        let rows = largest.par_chunks_mut(NUMBERS * stride).enumerate().with_min_len(8);
+        let rows = largest.par_chunks_mut(2 * PAIRS * stride).enumerate().with_min_len(8);
+        let most = looked.iter().map(|looked| looked.readings.len()).max().unwrap_or(0);
         rows.for_each(|(y, row)| {
+            let mut gains = vec![[0.0; LANES]; most];
             for block in &changed[place(y * per_row)..place((y + 1) * per_row)] {
                 let x = block % per_row * LANES;
-                for (i, readings) in [&*ended, &*passed].into_iter().enumerate() {
-                    let largest = arch.dispatch(
-                        #[inline(always)]
-                        || {
-                            let prior = belief.prior(*block);
-                            let mut largest = [[0.0f32; LANES]; 2];
-                            for (by_share, reading) in readings {
-                                let gain = reading.gain(&prior);
-                                let slope = gain.map(|gain| by_share * gain);
-                                for (largest, value) in largest.iter_mut().zip([gain, slope]) {
-                                    for lane in 0..LANES {
-                                        let (so_far, value) = (largest[lane], value[lane]);
-                                        largest[lane] = if value > so_far { value } else { so_far };
-                                    }
-                                }
-                            }
-                            largest
-                        },
-                    );
+                for (i, Looked { by_share, readings }) in looked.iter().enumerate() {
+                    let (prior, gains) = (belief.prior(*block), &mut gains[..readings.len()]);
+                    arch.dispatch(BlockGains { readings, prior, gains });
+                    let mut largest = [[0.0f32; LANES]; 2];
+                    for (gain, by_share) in gains.iter().zip(by_share) {
+                        for lane in 0..LANES {
+                            largest[0][lane] = largest[0][lane].max(gain[lane]);
+                            largest[1][lane] = largest[1][lane].max(by_share * gain[lane]);
+                        }
+                    }
                     let cells = LANES.min(width - x);
                     for (number, largest) in (2 * i..).zip(&largest) {
                         let out = &mut row[number * stride + PAD + x..][..cells];
@@ -115,26 +140,79 @@ impl Ceilings {
         });
     }
 
-    /// Adds the bound of a cell, by c_m, L, and f where the cell was passed.
+    /// Adds the bound of a cell in which an echo may have ended, by c_m, L, and f where the cell was
+    /// passed.
     #[inline(always)]
-    pub(super) fn add(
+    pub(super) fn add_end(
         &self,
         sum: &mut Lanes,
-        (y, x): (usize, isize),
+        place: (usize, isize),
         (ended, any): (&Lanes, &Lanes),
+        (band, free): (usize, f32),
+    ) {
+        let numbers = self.numbers(place);
+        add(sum, (numbers, band), self.stride(), ended);
+        if free <= 0.0 {
+            return;
+        }
+        let mut passed = [0.0; LANES];
+        for lane in 0..LANES {
+            passed[lane] = (any[lane] - ended[lane]) * free;
+        }
+        add(sum, (numbers, PASSED), self.stride(), &passed);
+    }
+
+    /// Adds the bound of a cell behind the end, by its share.
+    #[inline(always)]
+    pub(super) fn add_behind(
+        &self,
+        sum: &mut Lanes,
+        place: (usize, isize),
+        ended: &Lanes,
+        weight: f32,
+    ) {
+        let mut share = *ended;
+        share.iter_mut().for_each(|share| *share *= weight);
+        add(sum, (self.numbers(place), BEHIND), self.stride(), &share);
+    }
+
+    /// Adds the bound of a cell in front of the ends of some outcomes, by the sums of their p_k and
+    /// p_k·L(k), and by f.
+    #[inline(always)]
+    pub(super) fn add_front(
+        &self,
+        sum: &mut Lanes,
+        place: (usize, isize),
+        (all, passed): (&Lanes, &Lanes),
         free: f32,
     ) {
-        let stride = padded(self.grid.width());
-        let first = y * NUMBERS * stride + PAD.wrapping_add_signed(x);
-        let number = |i: usize| lanes_at(&self.largest, first + i * stride);
-        let (most_ended, slope_ended) = (number(0), number(1));
-        let (most_passed, slope_passed) = (number(2), number(3));
+        let numbers = self.numbers(place);
+        let most = lanes_at(numbers, 2 * PASSED * self.stride());
+        let slope = lanes_at(numbers, (2 * PASSED + 1) * self.stride());
         for lane in 0..LANES {
-            let by_end = slope_ended[lane] * ended[lane];
-            let by_free = slope_passed[lane] * ((any[lane] - ended[lane]) * free);
-            let by_end = if by_end < most_ended[lane] { by_end } else { most_ended[lane] };
-            let by_free = if by_free < most_passed[lane] { by_free } else { most_passed[lane] };
-            sum[lane] += by_end + by_free;
+            let (most, by_share) = (most[lane] * all[lane], slope[lane] * (free * passed[lane]));
+            sum[lane] += if by_share < most { by_share } else { most };
         }
+    }
+
+    fn stride(&self) -> usize {
+        padded(self.grid.width())
+    }
+
+    /// The numbers of the cells from a column of a row on.
+    #[inline(always)]
+    fn numbers(&self, (y, x): (usize, isize)) -> &[f32] {
+        &self.largest[y * 2 * PAIRS * self.stride() + PAD.wrapping_add_signed(x)..]
+    }
+}
+
+/// Adds the smaller of the largest gain and of slope times share.
+#[inline(always)]
+fn add(sum: &mut Lanes, (numbers, pair): (&[f32], usize), stride: usize, share: &Lanes) {
+    let (most, slope) =
+        (lanes_at(numbers, 2 * pair * stride), lanes_at(numbers, (2 * pair + 1) * stride));
+    for lane in 0..LANES {
+        let by_share = slope[lane] * share[lane];
+        sum[lane] += if by_share < most[lane] { by_share } else { most[lane] };
     }
 }

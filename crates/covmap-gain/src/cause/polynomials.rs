@@ -6,13 +6,13 @@
 
 use crate::InformationGain;
 use crate::belief::{Belief, PAD, lanes_at, padded};
-use crate::evidence::{Evidence, ExcessEvidence};
+use crate::evidence::{BlockGains, Evidence, ExcessEvidence};
 use crate::memory::Size;
 use crate::numbers::{as_f64, to_f32};
 use crate::probes::ProbeHistograms;
 use crate::view_points::groups_per_row;
 use covmap::Grid;
-use covmap::lanes::{LANES, Lanes};
+use covmap::lanes::{LANES, Lanes, add_product};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -102,13 +102,9 @@ impl Polynomials {
         rows.for_each(|(y, row)| {
             for block in of_row(y) {
                 let x = block % per_row * LANES;
-                let gains = || {
-                    let prior = belief.prior(*block);
-                    let mut gains = [[0.0; LANES]; MOST];
-                    gains.iter_mut().zip(&*readings).for_each(|(g, r)| *g = r.gain(&prior));
-                    gains
-                };
-                let gains = arch.dispatch(gains);
+                let mut gains = [[0.0; LANES]; MOST];
+                let prior = belief.prior(*block);
+                arch.dispatch(BlockGains { readings, prior, gains: &mut gains });
                 for (power, weights) in to_coefficients.iter().enumerate() {
                     let out = &mut row[power * stride + PAD + x..][..LANES.min(width - x)];
                     for (lane, out) in out.iter_mut().enumerate() {
@@ -171,9 +167,11 @@ impl Polynomials {
         for (power, sum) in sums.sums[..self.degree()].iter().enumerate() {
             factor *= scale;
             let coefficient = lanes_at(coefficients, power * stride);
+            let mut scaled = [0.0; LANES];
             for lane in 0..LANES {
-                gain[lane] += factor * (coefficient[lane] * sum[lane]);
+                scaled[lane] = factor * sum[lane];
             }
+            add_product(gain, coefficient, &scaled);
         }
     }
 }
@@ -191,6 +189,8 @@ impl PowerSums {
         for sum in &mut self.sums[..self.count] {
             for lane in 0..LANES {
                 term[lane] *= x[lane];
+            }
+            for lane in 0..LANES {
                 sum[lane] += term[lane];
             }
         }

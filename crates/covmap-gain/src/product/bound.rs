@@ -18,19 +18,18 @@
 
 mod families;
 
-use super::sweep::add_product;
 use crate::Stencil;
-use crate::belief::Belief;
+use crate::belief::{Belief, BlockPrior};
 use crate::memory::Size;
 use crate::numbers::as_f64;
 use crate::probes::ProbeHistograms;
 use crate::sight::{GroupLikelihood, Lanes64, RasterBeam, at_offset};
 use crate::view_points::groups_per_row;
 use covmap::Grid;
-use covmap::lanes::{LANES, Lanes};
+use covmap::lanes::{LANES, Lanes, add_product};
 use covmap_model::SensorModel;
 use families::{BANDS, NO_ECHO, ReadingFamily, families, in_front, near_end};
-use pulp::Arch;
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// The ceilings of all cells.
@@ -76,10 +75,7 @@ impl Ceilings {
             for block in changed {
                 let (x, y) = (block % per_row * LANES, block / per_row);
                 let (at, count) = (belief.bordered(y * width + x), LANES.min(width - x));
-                let ceiling = arch.dispatch(
-                    #[inline(always)]
-                    || family.ceiling(&belief.prior(*block)),
-                );
+                let ceiling = arch.dispatch(Ceiling { family, prior: belief.prior(*block) });
                 raster[at..at + count].copy_from_slice(&ceiling[..count]);
             }
         });
@@ -151,4 +147,19 @@ fn narrow(probabilities: &Lanes64) -> Lanes {
         (narrow[lane] = probabilities[lane] as f32);
     }
     narrow
+}
+
+/// The ceiling of a family in a block of cells, compiled for each kind of vector registers.
+struct Ceiling<'a> {
+    family: &'a ReadingFamily,
+    prior: BlockPrior<'a>,
+}
+
+impl WithSimd for Ceiling<'_> {
+    type Output = Lanes;
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, _: S) -> Lanes {
+        self.family.ceiling(&self.prior)
+    }
 }

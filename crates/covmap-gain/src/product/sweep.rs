@@ -29,7 +29,6 @@ use covmap_model::SensorModel;
 use planes::{FillRow, GainPlanes, Layout};
 use pulp::Arch;
 use rayon::prelude::*;
-pub(super) use sums::add_product;
 use swept::{SumRing, SweptRow};
 
 /// Fewer beams than this are worked at by one thread for each half of the rings: for each ring

@@ -5,7 +5,7 @@
 
 use crate::product::tables::beyond::BeyondOutcomes;
 use crate::product::tables::rings::{CellReadings, OutcomeReadings, OwnReading};
-use covmap::lanes::{LANES, Lanes, TOGETHER};
+use covmap::lanes::{LANES, Lanes, TOGETHER, add_product, add_scaled};
 
 /// How much each of some readings weighs in all of a beam's outcomes beyond a ring together:
 /// Σ_d p(d | c) · weight(d). The `nearest` outcome has the first weights.
@@ -18,10 +18,10 @@ pub(crate) fn mix_outcomes<'a>(
     let [mut a, mut b, mut c, mut d] = [[0.0; LANES]; TOGETHER];
     for (k, p) in likely {
         let weights = &weights[k - nearest];
-        add(&mut a, p, weights[0]);
-        add(&mut b, p, weights[1]);
-        add(&mut c, p, weights[2]);
-        add(&mut d, p, weights[3]);
+        add_scaled(&mut a, p, weights[0]);
+        add_scaled(&mut b, p, weights[1]);
+        add_scaled(&mut c, p, weights[2]);
+        add_scaled(&mut d, p, weights[3]);
     }
     [a, b, c, d]
 }
@@ -69,7 +69,7 @@ fn sum_some<const R: usize>(
     for (offset, factors) in cells.iter().zip(factors) {
         let at = first.wrapping_add_signed(*offset);
         for (reading, sum) in sums.iter_mut().enumerate() {
-            add(sum, gains_at(planes, at + reading * stride), factors[reading]);
+            add_scaled(sum, gains_at(planes, at + reading * stride), factors[reading]);
         }
     }
     std::array::from_fn(|reading| if reading < R { sums[reading] } else { [0.0; LANES] })
@@ -99,7 +99,7 @@ impl OutcomeReadings {
                         for (offset, weights) in cells.iter().zip(weights.chunks_exact(count)) {
                             let mut at = first.wrapping_add_signed(*offset);
                             for weight in weights {
-                                add(&mut sum, gains_at(planes, at), *weight);
+                                add_scaled(&mut sum, gains_at(planes, at), *weight);
                                 at += stride;
                             }
                         }
@@ -111,7 +111,7 @@ impl OutcomeReadings {
                 let mut sum = [0.0; LANES];
                 for OwnReading { cell, reading } in &own[beam] {
                     let at = first.wrapping_add_signed(cells[*cell]) + reading * stride;
-                    add(&mut sum, gains_at(planes, at), 1.0);
+                    add_scaled(&mut sum, gains_at(planes, at), 1.0);
                 }
                 sum
             }
@@ -132,7 +132,7 @@ fn mix<const M: usize>(
     for (offset, weights) in cells.iter().zip(weights.as_chunks::<M>().0) {
         let at = first.wrapping_add_signed(*offset);
         for (i, weight) in weights.iter().enumerate() {
-            add(&mut sum, gains_at(planes, at + i * stride), *weight);
+            add_scaled(&mut sum, gains_at(planes, at + i * stride), *weight);
         }
     }
     sum
@@ -141,18 +141,4 @@ fn mix<const M: usize>(
 #[inline(always)]
 fn gains_at(plane: &[f32], at: usize) -> &Lanes {
     plane[at..].first_chunk().unwrap_or(&[0.0; LANES])
-}
-
-#[inline(always)]
-fn add(sum: &mut Lanes, values: &Lanes, weight: f32) {
-    for lane in 0..LANES {
-        sum[lane] += values[lane] * weight;
-    }
-}
-
-#[inline(always)]
-pub(crate) fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
-    for lane in 0..LANES {
-        sum[lane] += a[lane] * b[lane];
-    }
 }

@@ -1,10 +1,10 @@
 //! Rows of view-points on their way from ring to ring.
 
 use super::planes::Layout;
-use super::sums::{add_product, mix_outcomes};
+use super::sums::mix_outcomes;
 use crate::outcomes::{AskedRow, GroupBeam, RowGains};
 use crate::product::tables::rings::DistanceRing;
-use covmap::lanes::{LANES, TOGETHER};
+use covmap::lanes::{LANES, TOGETHER, add_product};
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 

@@ -8,7 +8,7 @@
 
 use super::spanning::SpanningSet;
 use crate::belief::{Belief, BlockPrior};
-use crate::evidence::{Evidence, ExcessEvidence};
+use crate::evidence::{BlockGains, Evidence, ExcessEvidence};
 use crate::numbers::to_f32;
 use crate::probes::ProbeHistograms;
 use covmap::lanes::{LANES, Lanes};
@@ -94,14 +94,7 @@ impl Basis {
             let first = portion * BLOCKS;
             for block in &changed[place(first)..place(first + BLOCKS)] {
                 let gains = &mut gains[(block - first) * readings.len()..];
-                arch.dispatch(
-                    #[inline(always)]
-                    || {
-                        let prior = belief.prior(*block);
-                        let all = gains.iter_mut().zip(readings.iter());
-                        all.for_each(|(gain, reading)| *gain = reading.gain(&prior));
-                    },
-                );
+                arch.dispatch(BlockGains { readings, prior: belief.prior(*block), gains });
             }
         });
     }
