@@ -108,14 +108,16 @@ mod tests {
     impl Objective for Hill {
         fn at(&self, place: &[f64]) -> (f64, Vec<f64>) {
             let bend = place[0] + place[1];
-            let (mut value, mut gradient) = (-(bend * bend * bend * bend), vec![0.0; place.len()]);
+            let cube = bend * bend * bend;
+            let (mut value, mut gradient) = (-cube * bend, vec![0.0; place.len()]);
             for (k, (x, g)) in (1u32..).zip(place.iter().zip(&mut gradient)) {
                 let k = f64::from(k);
-                value -= (k * k * k * k) * (x - k) * (x - k);
-                *g = -2.0 * (k * k * k * k) * (x - k);
+                let steepness = k * k * k * k;
+                value -= steepness * (x - k) * (x - k);
+                *g = -2.0 * steepness * (x - k);
             }
-            gradient[0] -= 4.0 * (bend * bend * bend);
-            gradient[1] -= 4.0 * (bend * bend * bend);
+            gradient[0] -= 4.0 * cube;
+            gradient[1] -= 4.0 * cube;
             (value, gradient)
         }
     }

@@ -25,6 +25,7 @@ mod beam;
 mod causes;
 mod ceilings;
 mod ends;
+mod fronts;
 mod polynomials;
 
 use crate::belief::{Belief, NOT_KNOWN, lanes_at};
@@ -36,11 +37,12 @@ use crate::view_points::groups_per_row;
 use crate::{InformationGain, Stencil, evidence::Evidence};
 use beam::CauseBeam;
 use causes::GroupCauses;
-use ceilings::{Bands, Ceilings, Said};
+use ceilings::{Bands, Ceilings};
 use covmap::Grid;
 use covmap::lanes::{LANES, Lanes, add_product};
 use covmap_model::{CauseParameters, ModelParameters, SensorModel, gaussian, opaque};
 use ends::AtEnd;
+use fronts::{Front, FrontSums};
 use polynomials::Polynomials;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
@@ -81,7 +83,8 @@ impl Cause {
         let (free, covered) = ((0.0, p.free.sigma), (1.0, p.sigma_behind));
         #[allow(clippy::cast_precision_loss, reason = "at most 16 bearings")]
         let all = p.bearings as f64;
-        let most_passed = p.free.share * p.no_echo.share.max(all / (all + p.chance));
+        let most_any = all / (all + p.chance);
+        let most_passed = p.free.share * p.no_echo.share.max(most_any);
         let most_ended = 1.0 / (1.0 + p.chance);
         let most_behind = p.behind_weight * most_ended;
         let polynomials = |kernel, most| {
@@ -90,19 +93,15 @@ impl Cause {
         let (front, behind) = (polynomials(free, most_passed), polynomials(covered, most_behind));
         let usable = model.parameters().usable_range;
         let bands = Bands::new(p.sigma_in.at(0.0, 0.0), p.sigma_in.at(usable, usable));
-        let at_end = AtEnd::new(p, bins, (most_ended, all / (all + p.chance)));
+        let at_end = AtEnd::new(p, bins, (most_ended, most_any));
         let width = belief.raster_width();
         let beam = |beam| CauseBeam::new((p, r, &at_end), (&bands, beam, stencil), width);
         let beams = stencil.beams.iter().map(beam).collect();
-        let says = |kernel: (f64, f64)| -> Said<'_> {
-            Box::new(move |share| evidence(bins, kernel, share))
-        };
         let ceilings = || {
-            let of_band =
-                |band| (most_ended, bands.kernels(band).into_iter().map(says).collect::<Vec<_>>());
-            let [a, b, c] = std::array::from_fn(of_band);
-            let (passed, behind) = (vec![says(free)], vec![says(covered)]);
-            Ceilings::new(grid, [a, b, c, (most_passed, passed), (most_behind, behind)])
+            let [a, b, c] = std::array::from_fn(|band| (most_ended, bands.kernels(band)));
+            let behind = (most_behind, vec![covered]);
+            let pairs = [a, b, c, (most_passed, vec![free]), behind];
+            Ceilings::new(grid, pairs, |kernel, share| evidence(bins, kernel, share))
         };
         let cells = belief.expected().len();
         Self {
@@ -229,13 +228,6 @@ impl WithSimd for GainsOfRow<'_> {
     }
 }
 
-/// The cells before the end of an outcome: how many, p_k, and L(k).
-struct Front {
-    cells: usize,
-    probability: Lanes,
-    any: Lanes,
-}
-
 /// A beam's sums over its outcomes from a group of view-points, the first of which is in column `x`
 /// of row `y`.
 struct GroupSum<'a> {
@@ -273,9 +265,10 @@ impl GroupSum<'_> {
             };
             fronts.push(Front { cells, probability: *probability, any });
         }
-        match &cause.ceilings {
-            Some(ceilings) if !EXACT => self.add_front_bounds(&mut gain, beam, (fronts, ceilings)),
-            _ => self.add_front(&mut gain, beam, fronts),
+        match (self.bounds::<EXACT>(), &cause.front) {
+            (Some(ceilings), _) => self.add_fronts(&mut gain, beam, (fronts, ceilings.no_sums())),
+            (_, Some(front)) => self.add_fronts(&mut gain, beam, (fronts, front.no_sums())),
+            _ => fronts.iter().for_each(|front| self.add_each_front(&mut gain, beam, front)),
         }
         gain
     }
@@ -289,112 +282,58 @@ impl GroupSum<'_> {
         causes: &GroupCauses<'_>,
         probability: &Lanes,
     ) {
+        let (at_end, bounds) = (&self.cause.at_end, self.bounds::<EXACT>());
         let mut sum = [0.0; LANES];
-        match &self.cause.ceilings {
-            Some(ceilings) if !EXACT => {
-                self.add_end_bounds(&mut sum, (beam, end), causes, ceilings);
+        for (cell, near) in beam.cells[end.front..end.ended].iter().zip(&beam.near[end.first..]) {
+            let Some((y, x)) = self.place(cell) else { continue };
+            let ended = causes.ended(cell);
+            if let Some(ceilings) = bounds {
+                let kernel = (near.band, near.free);
+                ceilings.add_end(&mut sum, (y, x), (ended, &causes.any), kernel);
+            } else {
+                let prior = self.belief.prior_at(y, x);
+                at_end.add(&mut sum, &prior, near.kernel(), ended, &causes.any);
             }
-            _ => self.add_end_gains(&mut sum, (beam, end), causes),
+        }
+        for cell in &beam.cells[end.ended..end.reach] {
+            let Some((y, x)) = self.place(cell) else { continue };
+            let ended = causes.ended(cell);
+            if let Some(ceilings) = bounds {
+                ceilings.add_behind(&mut sum, (y, x), ended, beam.behind_weight);
+            } else if let Some(behind) = &self.cause.behind {
+                behind.add(&mut sum, (y, x), ended, beam.behind_weight);
+            } else {
+                let (prior, kernel) =
+                    (self.belief.prior_at(y, x), at_end.behind(beam.behind_weight));
+                at_end.add(&mut sum, &prior, kernel, ended, &causes.any);
+            }
         }
         add_product(gain, probability, &sum);
     }
 
+    /// What bounds are made of, unless gains are asked for.
     #[inline(always)]
-    fn add_end_gains(
-        &self,
-        sum: &mut Lanes,
-        (beam, end): (&CauseBeam, &beam::End),
-        causes: &GroupCauses<'_>,
-    ) {
-        let at_end = &self.cause.at_end;
-        for (cell, near) in beam.cells[end.front..end.ended].iter().zip(&beam.near[end.first..]) {
-            let Some((y, x)) = self.place(cell) else { continue };
-            let prior = self.belief.prior_at(y, x);
-            let kernel = near.kernel();
-            at_end.add(sum, &prior, kernel, causes.ended(cell), &causes.any);
-        }
-        let kernel = at_end.behind(beam.behind_weight);
-        for cell in &beam.cells[end.ended..end.reach] {
-            let Some((y, x)) = self.place(cell) else { continue };
-            if let Some(behind) = &self.cause.behind {
-                behind.add(sum, (y, x), causes.ended(cell), beam.behind_weight);
-            } else {
-                let prior = self.belief.prior_at(y, x);
-                at_end.add(sum, &prior, kernel, causes.ended(cell), &causes.any);
-            }
-        }
+    fn bounds<const EXACT: bool>(&self) -> Option<&Ceilings> {
+        self.cause.ceilings.as_ref().filter(|_| !EXACT)
     }
 
+    /// Adds the gains, or their bounds, of the cells in front of the ends of all outcomes: from the
+    /// farthest cell inwards, each for all outcomes at once.
     #[inline(always)]
-    fn add_end_bounds(
-        &self,
-        sum: &mut Lanes,
-        (beam, end): (&CauseBeam, &beam::End),
-        causes: &GroupCauses<'_>,
-        ceilings: &Ceilings,
-    ) {
-        for (cell, near) in beam.cells[end.front..end.ended].iter().zip(&beam.near[end.first..]) {
-            let Some(place) = self.place(cell) else { continue };
-            ceilings.add_end(sum, place, (causes.ended(cell), &causes.any), (near.band, near.free));
-        }
-        for cell in &beam.cells[end.ended..end.reach] {
-            let Some(place) = self.place(cell) else { continue };
-            ceilings.add_behind(sum, place, causes.ended(cell), beam.behind_weight);
-        }
-    }
-
-    /// Adds the gains of the cells in front of the ends of all outcomes.
-    #[inline(always)]
-    fn add_front(&self, gain: &mut Lanes, beam: &CauseBeam, fronts: &mut [Front]) {
-        if let Some(polynomials) = &self.cause.front {
-            return self.add_front_sums(gain, (beam, polynomials), fronts);
-        }
-        for front in fronts {
-            self.add_each_front(gain, beam, front);
-        }
-    }
-
-    /// From the farthest cell inwards, each for all outcomes at once.
-    #[inline(always)]
-    fn add_front_sums(
+    fn add_fronts(
         &self,
         gain: &mut Lanes,
-        (beam, polynomials): (&CauseBeam, &Polynomials),
-        fronts: &mut [Front],
+        beam: &CauseBeam,
+        (fronts, mut sums): (&mut [Front], impl FrontSums),
     ) {
         fronts.sort_by_key(|front| std::cmp::Reverse(front.cells));
-        let mut sums = polynomials.no_sums();
         for i in 0..fronts.len() {
             let Front { cells, probability, any } = &fronts[i];
             sums.add(probability, any);
             let next = fronts.get(i + 1).map_or(0, |next| next.cells);
             for cell in beam.cells[next..*cells].iter().filter(|cell| cell.free > 0.0) {
                 let Some(place) = self.place(cell) else { continue };
-                polynomials.add_sums(gain, place, &sums, cell.free);
-            }
-        }
-    }
-
-    /// Adds the bounds of the cells in front of the ends of all outcomes.
-    #[inline(always)]
-    fn add_front_bounds(
-        &self,
-        bound: &mut Lanes,
-        beam: &CauseBeam,
-        (fronts, ceilings): (&mut [Front], &Ceilings),
-    ) {
-        fronts.sort_by_key(|front| std::cmp::Reverse(front.cells));
-        let (mut all, mut passed) = ([0.0; LANES], [0.0; LANES]);
-        for i in 0..fronts.len() {
-            let Front { cells, probability, any } = &fronts[i];
-            for lane in 0..LANES {
-                all[lane] += probability[lane];
-            }
-            add_product(&mut passed, probability, any);
-            let next = fronts.get(i + 1).map_or(0, |next| next.cells);
-            for cell in beam.cells[next..*cells].iter().filter(|cell| cell.free > 0.0) {
-                let Some(place) = self.place(cell) else { continue };
-                ceilings.add_front(bound, place, (&all, &passed), cell.free);
+                sums.add_cell(gain, place, cell.free);
             }
         }
     }

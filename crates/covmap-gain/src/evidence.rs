@@ -138,8 +138,7 @@ pub(crate) fn w<const N: usize>(e: &[f32; N]) -> [f32; N] {
     for i in 0..N {
         let e = e[i];
         let far = z[i] * log[i] - (z[i] - 1.0);
-        let series = few(e);
-        out[i] = if e < FEW { series } else { far };
+        out[i] = if e < FEW { few(e) } else { far };
     }
     out
 }
@@ -150,8 +149,8 @@ pub(crate) const FEW: f32 = 0.2;
 /// w(e) by its series, for e up to [`FEW`].
 #[inline(always)]
 pub(crate) fn few(e: f32) -> f32 {
-    let terms = [1.0 / 42.0, -1.0 / 30.0, 1.0 / 20.0, -1.0 / 12.0, 1.0 / 6.0, -0.5];
-    -(e * e) * terms.iter().fold(-1.0f32 / 56.0, |sum, term| sum * e + term)
+    let tail = 1.0 / 20.0 - e * (1.0 / 30.0 - e * (1.0 / 42.0 - e * (1.0 / 56.0)));
+    e * e * (0.5 - e * (1.0 / 6.0 - e * (1.0 / 12.0 - e * tail)))
 }
 
 #[cfg(test)]

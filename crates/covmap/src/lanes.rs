@@ -52,17 +52,18 @@ pub fn ln<const N: usize>(x: &[f32; N]) -> [f32; N] {
     let square = map(&z, |z| z * z);
     // Pairs of coefficients: short chains of operations, many of them at a time.
     let pair = |high: f32, low: f32| map(&z, |z| high * z + low);
-    let mut p = times_add(&square, 7.037_683_6e-2, &pair(-1.151_461e-1, 1.167_699_9e-1));
+    let mut p = add(&times(&square, 7.037_683_6e-2), &pair(-1.151_461e-1, 1.167_699_9e-1));
     for low in [
         pair(-1.242_014_1e-1, 1.424_932_3e-1),
         pair(-1.666_805_8e-1, 2.000_071_5e-1),
         pair(-2.499_999_4e-1, 3.333_333e-1),
     ] {
-        p = multiply_add(&p, &square, &low);
+        p = add(&multiply(&p, &square), &low);
     }
-    let rest = times_add(&exponent, -2.121_944_4e-4, &times(&square, -0.5));
-    let small = multiply_add(&multiply(&p, &z), &square, &rest);
-    times_add(&exponent, 0.693_359_4, &add(&z, &small))
+    let p = multiply(&multiply(&p, &z), &square);
+    let rest = add(&times(&exponent, -2.121_944_4e-4), &times(&square, -0.5));
+    let small = add(&p, &rest);
+    add(&add(&z, &small), &times(&exponent, 0.693_359_4))
 }
 
 /// The exponentials of numbers of at most 88, each to within 2e-7 of itself; below −87 that
@@ -77,14 +78,14 @@ pub fn exp<const N: usize>(x: &[f32; N]) -> [f32; N] {
     let x = map(x, |x| if x > -87.0 { x } else { -87.0 });
     let shifted = map(&x, |x| x * std::f32::consts::LOG2_E + TO_WHOLE);
     let whole = map(&shifted, |s| s - TO_WHOLE);
-    let z = times_add(&whole, 2.121_944_4e-4, &times_add(&whole, -0.693_359_4, &x));
+    let z = add(&add(&x, &times(&whole, -0.693_359_4)), &times(&whole, 2.121_944_4e-4));
     let square = map(&z, |z| z * z);
     let pair = |high: f32, low: f32| map(&z, |z| high * z + low);
     let mut p = pair(1.987_569_2e-4, 1.398_199_9e-3);
     for low in [pair(8.333_452e-3, 4.166_579_6e-2), pair(1.666_666_5e-1, 5.0e-1)] {
-        p = multiply_add(&p, &square, &low);
+        p = add(&multiply(&p, &square), &low);
     }
-    let mantissa = map(&multiply_add(&p, &square, &z), |m| m + 1.0);
+    let mantissa = map(&add(&multiply(&p, &square), &z), |m| m + 1.0);
     // The sign of the exponent is shifted out.
     let power = map(&shifted, |s| f32::from_bits((s.to_bits() << 23).wrapping_add(0x3f80_0000)));
     multiply(&mantissa, &power)
@@ -137,21 +138,6 @@ fn multiply<const N: usize>(a: &[f32; N], b: &[f32; N]) -> [f32; N] {
 #[inline(always)]
 fn times<const N: usize>(a: &[f32; N], factor: f32) -> [f32; N] {
     map(a, |a| a * factor)
-}
-
-/// a·b + c.
-#[inline(always)]
-fn multiply_add<const N: usize>(a: &[f32; N], b: &[f32; N], c: &[f32; N]) -> [f32; N] {
-    let mut out = [0.0; N];
-    for i in 0..N {
-        out[i] = a[i] * b[i] + c[i];
-    }
-    out
-}
-
-#[inline(always)]
-fn times_add<const N: usize>(a: &[f32; N], factor: f32, c: &[f32; N]) -> [f32; N] {
-    multiply_add(a, &[factor; N], c)
 }
 
 #[cfg(test)]

@@ -12,13 +12,14 @@
 //! probed and not proved: [`crate::GainCache::take_exceeded`] tells of gains that were met above
 //! their bounds, and a decision that meets one evaluates all of its candidates.
 
+use super::fronts::FrontSums;
 use crate::belief::{Belief, PAD, lanes_at, padded};
 use crate::evidence::{BlockGains, Evidence, ExcessEvidence};
 use crate::memory::Size;
 use crate::numbers::{as_f64, to_f32};
 use crate::view_points::groups_per_row;
 use covmap::Grid;
-use covmap::lanes::{LANES, Lanes};
+use covmap::lanes::{LANES, Lanes, add_product, add_scaled};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -67,9 +68,6 @@ const PAIRS: usize = BANDS + 2;
 /// The parts of the largest share that are looked at.
 const PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 
-/// What a kernel says with a share.
-pub(super) type Said<'a> = Box<dyn Fn(f64) -> Evidence + 'a>;
-
 /// The readings that are looked at, and 1/share of each.
 #[derive(Debug, Clone)]
 struct Looked {
@@ -88,14 +86,19 @@ pub(super) struct Ceilings {
 }
 
 impl Ceilings {
-    /// What the kernels of each pair say with a share, and the largest share of each.
-    pub(super) fn new(grid: Grid, said: [(f64, Vec<Said<'_>>); PAIRS]) -> Self {
-        let looked = said.map(|(most, said)| {
+    /// Of each pair the largest share, and μ and σ of its kernels; `evidence` is what a kernel says
+    /// with a share.
+    pub(super) fn new(
+        grid: Grid,
+        pairs: [(f64, Vec<(f64, f64)>); PAIRS],
+        evidence: impl Fn((f64, f64), f64) -> Evidence,
+    ) -> Self {
+        let looked = pairs.map(|(most, kernels)| {
             let shares = PARTS.iter().map(|part| part * most.max(1e-9));
-            let of_share = |share: f64| {
-                said.iter().map(move |said| (to_f32(1.0 / share), said(share).excess()))
-            };
-            let (by_share, readings) = shares.flat_map(of_share).unzip();
+            let all = shares.flat_map(|share| kernels.iter().map(move |kernel| (share, *kernel)));
+            let of_kernel =
+                |(share, kernel)| (to_f32(1.0 / share), evidence(kernel, share).excess());
+            let (by_share, readings) = all.map(of_kernel).unzip();
             Looked { by_share, readings }
         });
         let largest = vec![0.0; grid.height() * 2 * PAIRS * padded(grid.width())];
@@ -150,16 +153,14 @@ impl Ceilings {
         (ended, any): (&Lanes, &Lanes),
         (band, free): (usize, f32),
     ) {
-        let numbers = self.numbers(place);
-        add(sum, (numbers, band), self.stride(), ended);
-        if free <= 0.0 {
-            return;
+        self.add(sum, place, band, (&ONCE, ended));
+        if free > 0.0 {
+            let mut passed = [0.0; LANES];
+            for lane in 0..LANES {
+                passed[lane] = (any[lane] - ended[lane]) * free;
+            }
+            self.add(sum, place, PASSED, (&ONCE, &passed));
         }
-        let mut passed = [0.0; LANES];
-        for lane in 0..LANES {
-            passed[lane] = (any[lane] - ended[lane]) * free;
-        }
-        add(sum, (numbers, PASSED), self.stride(), &passed);
     }
 
     /// Adds the bound of a cell behind the end, by its share.
@@ -171,48 +172,59 @@ impl Ceilings {
         ended: &Lanes,
         weight: f32,
     ) {
-        let mut share = *ended;
-        share.iter_mut().for_each(|share| *share *= weight);
-        add(sum, (self.numbers(place), BEHIND), self.stride(), &share);
+        let mut shares = [0.0; LANES];
+        add_scaled(&mut shares, ended, weight);
+        self.add(sum, place, BEHIND, (&ONCE, &shares));
     }
 
-    /// Adds the bound of a cell in front of the ends of some outcomes, by the sums of their p_k and
-    /// p_k·L(k), and by f.
+    /// Sums to which nothing is added yet.
     #[inline(always)]
-    pub(super) fn add_front(
+    pub(super) fn no_sums(&self) -> CeilingSums<'_> {
+        CeilingSums { ceilings: self, all: [0.0; LANES], passed: [0.0; LANES] }
+    }
+
+    /// Adds the smaller of the largest gain and of slope times share, of a pair of numbers, for
+    /// outcomes of which these are the sums of p and of p·share.
+    #[inline(always)]
+    fn add(
         &self,
         sum: &mut Lanes,
-        place: (usize, isize),
-        (all, passed): (&Lanes, &Lanes),
-        free: f32,
+        (y, x): (usize, isize),
+        pair: usize,
+        (all, shares): (&Lanes, &Lanes),
     ) {
-        let numbers = self.numbers(place);
-        let most = lanes_at(numbers, 2 * PASSED * self.stride());
-        let slope = lanes_at(numbers, (2 * PASSED + 1) * self.stride());
+        let stride = padded(self.grid.width());
+        let first = (y * PAIRS + pair) * 2 * stride + PAD.wrapping_add_signed(x);
+        let most = lanes_at(&self.largest, first);
+        let slope = lanes_at(&self.largest, first + stride);
         for lane in 0..LANES {
-            let (most, by_share) = (most[lane] * all[lane], slope[lane] * (free * passed[lane]));
+            let (most, by_share) = (most[lane] * all[lane], slope[lane] * shares[lane]);
             sum[lane] += if by_share < most { by_share } else { most };
         }
     }
-
-    fn stride(&self) -> usize {
-        padded(self.grid.width())
-    }
-
-    /// The numbers of the cells from a column of a row on.
-    #[inline(always)]
-    fn numbers(&self, (y, x): (usize, isize)) -> &[f32] {
-        &self.largest[y * 2 * PAIRS * self.stride() + PAD.wrapping_add_signed(x)..]
-    }
 }
 
-/// Adds the smaller of the largest gain and of slope times share.
-#[inline(always)]
-fn add(sum: &mut Lanes, (numbers, pair): (&[f32], usize), stride: usize, share: &Lanes) {
-    let (most, slope) =
-        (lanes_at(numbers, 2 * pair * stride), lanes_at(numbers, (2 * pair + 1) * stride));
-    for lane in 0..LANES {
-        let by_share = slope[lane] * share[lane];
-        sum[lane] += if by_share < most[lane] { by_share } else { most[lane] };
+/// One outcome, and that for sure.
+const ONCE: Lanes = [1.0; LANES];
+
+/// The sums of p_k and of p_k·L(k).
+pub(super) struct CeilingSums<'a> {
+    ceilings: &'a Ceilings,
+    all: Lanes,
+    passed: Lanes,
+}
+
+impl FrontSums for CeilingSums<'_> {
+    #[inline(always)]
+    fn add(&mut self, probability: &Lanes, any: &Lanes) {
+        add_scaled(&mut self.all, probability, 1.0);
+        add_product(&mut self.passed, probability, any);
+    }
+
+    #[inline(always)]
+    fn add_cell(&self, gain: &mut Lanes, place: (usize, isize), free: f32) {
+        let mut passed = [0.0; LANES];
+        add_scaled(&mut passed, &self.passed, free);
+        self.ceilings.add(gain, place, PASSED, (&self.all, &passed));
     }
 }

@@ -4,6 +4,7 @@
 //! the share x that is 0 at x = 0, and so is the slope of a relative entropy. It is interpolated in Chebyshev's nodes of \[0, x_max\], as many as
 //! the gains of histograms of all kinds need to be met.
 
+use super::fronts::FrontSums;
 use crate::InformationGain;
 use crate::belief::{Belief, PAD, lanes_at, padded};
 use crate::evidence::{BlockGains, Evidence, ExcessEvidence};
@@ -12,7 +13,7 @@ use crate::numbers::{as_f64, to_f32};
 use crate::probes::ProbeHistograms;
 use crate::view_points::groups_per_row;
 use covmap::Grid;
-use covmap::lanes::{LANES, Lanes, add_product};
+use covmap::lanes::{LANES, Lanes};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -38,9 +39,8 @@ pub(super) struct Polynomials {
 }
 
 /// S_q, of each power.
-pub(super) struct PowerSums {
-    first: usize,
-    count: usize,
+pub(super) struct PowerSums<'a> {
+    polynomials: &'a Polynomials,
     sums: [Lanes; MOST],
 }
 
@@ -148,50 +148,42 @@ impl Polynomials {
 
     /// Sums to which nothing is added yet.
     #[inline(always)]
-    pub(super) fn no_sums(&self) -> PowerSums {
-        PowerSums { first: self.first, count: self.degree(), sums: [[0.0; LANES]; MOST] }
+    pub(super) fn no_sums(&self) -> PowerSums<'_> {
+        PowerSums { polynomials: self, sums: [[0.0; LANES]; MOST] }
+    }
+}
+
+impl FrontSums for PowerSums<'_> {
+    /// Adds p·x^q to every sum.
+    #[inline(always)]
+    fn add(&mut self, probability: &Lanes, x: &Lanes) {
+        let mut term = *probability;
+        for _ in 1..self.polynomials.first {
+            for lane in 0..LANES {
+                term[lane] *= x[lane];
+            }
+        }
+        for sum in &mut self.sums[..self.polynomials.degree()] {
+            for lane in 0..LANES {
+                term[lane] *= x[lane];
+                sum[lane] += term[lane];
+            }
+        }
     }
 
     /// Adds the gains by the shares `weight`·x for all the x that were added to the sums.
     #[inline(always)]
-    pub(super) fn add_sums(
-        &self,
-        gain: &mut Lanes,
-        place: (usize, isize),
-        sums: &PowerSums,
-        weight: f32,
-    ) {
-        let (stride, coefficients) = (padded(self.grid.width()), self.coefficients(place));
-        let scale = weight / to_f32(self.largest);
-        let mut factor = (1..self.first).fold(1.0, |factor, _| factor * scale);
-        for (power, sum) in sums.sums[..self.degree()].iter().enumerate() {
+    fn add_cell(&self, gain: &mut Lanes, place: (usize, isize), weight: f32) {
+        let Self { polynomials, sums } = self;
+        let stride = padded(polynomials.grid.width());
+        let coefficients = polynomials.coefficients(place);
+        let scale = weight / to_f32(polynomials.largest);
+        let mut factor = (1..polynomials.first).fold(1.0, |factor, _| factor * scale);
+        for (power, sum) in sums[..polynomials.degree()].iter().enumerate() {
             factor *= scale;
             let coefficient = lanes_at(coefficients, power * stride);
-            let mut scaled = [0.0; LANES];
             for lane in 0..LANES {
-                scaled[lane] = factor * sum[lane];
-            }
-            add_product(gain, coefficient, &scaled);
-        }
-    }
-}
-
-impl PowerSums {
-    /// Adds p·x^q to every sum.
-    #[inline(always)]
-    pub(super) fn add(&mut self, probability: &Lanes, x: &Lanes) {
-        let mut term = *probability;
-        for _ in 1..self.first {
-            for lane in 0..LANES {
-                term[lane] *= x[lane];
-            }
-        }
-        for sum in &mut self.sums[..self.count] {
-            for lane in 0..LANES {
-                term[lane] *= x[lane];
-            }
-            for lane in 0..LANES {
-                sum[lane] += term[lane];
+                gain[lane] += coefficient[lane] * (factor * sum[lane]);
             }
         }
     }
