@@ -119,8 +119,8 @@ impl Cause {
 
     /// About how many bytes this takes.
     pub(crate) fn bytes(size: &Size) -> f64 {
-        // A cell of the stencil, and its kernels for the outcomes that end nearby.
-        let stencil = size.stencil * (40.0 + 4.0 * (4.0 * size.bins + 16.0));
+        // A cell of the stencil, and its kernels and surfaces for the outcomes that end nearby.
+        let stencil = size.stencil * (40.0 + 4.0 * (4.0 * size.bins + 48.0 + 24.0));
         let ends = size.beams * size.ranges * 40.0;
         2.0 * Polynomials::bytes(size)
             + Ceilings::bytes(size)
