@@ -83,6 +83,11 @@ pub(crate) struct BlockPrior<'a> {
 }
 
 impl<'a> BlockPrior<'a> {
+    /// That of histograms that lie bin by bin, one `stride` from the next; all can change.
+    pub(crate) fn of(h: &'a [f32], h_hat: &'a [f32], stride: usize) -> Self {
+        Self { prior: Prior { h, h_hat, stride }, changeable: &[1.0; LANES] }
+    }
+
     /// [`Prior::h`].
     #[inline(always)]
     pub(crate) fn h(&self, bin: usize) -> &'a Lanes {
@@ -316,6 +321,11 @@ impl Belief {
         let x = (block % per_row * LANES).cast_signed();
         let prior = self.prior_at(block / per_row, x);
         BlockPrior { prior, changeable: &self.changeable[block] }
+    }
+
+    /// How many columns and rows surround the grid in the bordered rasters.
+    pub(crate) fn border(&self) -> usize {
+        self.border
     }
 
     /// How far apart two rows lie in the bordered rasters.

@@ -7,6 +7,7 @@
 
 use crate::belief::Belief;
 use crate::cause::Cause;
+use crate::layout::PlaneLayout;
 use crate::memory::Size;
 use crate::outcomes::{AskedRow, RowGains};
 use crate::product::Product;
@@ -70,6 +71,14 @@ impl Evaluator {
         match self {
             Self::Product(product) => product.border(),
             Self::Cause(_) => 0,
+        }
+    }
+
+    /// How its planes of gains lie, if it has any.
+    pub(crate) fn planes(&self) -> Option<PlaneLayout> {
+        match self {
+            Self::Product(product) => Some(product.planes()),
+            Self::Cause(_) => None,
         }
     }
 

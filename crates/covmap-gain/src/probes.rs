@@ -4,15 +4,18 @@
 //! and paired peaks of many places and widths on floors of many heights, which is what few and many
 //! readings leave.
 
+use crate::belief::BlockPrior;
 use crate::evidence::Evidence;
+use crate::numbers::to_f32;
 use covmap::bin_coverage;
+use covmap::lanes::LANES;
 use covmap_model::{Outcome, SensorModel};
 
 /// An interpolated gain of a cell may be off by this, in units of the largest gain of its
 /// histogram and of one that matters in a decision: what a decision tolerates, for the worst of
 /// histograms. Errors of many cells cancel: E\[I\] is off by some hundredth of it, but with four
 /// times as much random models were found for which it is off by more than a decision tolerates.
-const TOLERANCE: f64 = 1e-5;
+pub(crate) const TOLERANCE: f64 = 1e-5;
 /// A gain that matters in a decision is so much of the largest that a reading can give.
 const MATTERING: f64 = 0.1;
 
@@ -29,6 +32,32 @@ const WIDTHS_AND_FLOORS: [(f64, f64); 10] = [
     (0.4, 1e-3),
     (0.4, 5.0),
 ];
+
+/// [`LANES`] probes as a block of cells, in single precision.
+struct ProbeBlock {
+    h: Vec<f32>,
+    h_hat: Vec<f32>,
+}
+
+impl ProbeBlock {
+    /// Of h and h·log h of at most so many; the others are 0.
+    fn new(probes: &[(Vec<f64>, Vec<f64>)]) -> Self {
+        let bins = probes.first().map_or(0, |(h, _)| h.len());
+        let (mut h, mut h_hat) = (vec![0.0; bins * LANES], vec![0.0; bins * LANES]);
+        for (lane, (of, u)) in probes.iter().enumerate() {
+            let entropy = -u.iter().sum::<f64>();
+            for bin in 0..bins {
+                h[bin * LANES + lane] = to_f32(of[bin]);
+                h_hat[bin * LANES + lane] = to_f32(u[bin] + of[bin] * entropy);
+            }
+        }
+        Self { h, h_hat }
+    }
+
+    fn prior(&self) -> BlockPrior<'_> {
+        BlockPrior::of(&self.h, &self.h_hat, LANES)
+    }
+}
 
 /// The histograms of a model.
 #[derive(Debug, Clone)]
@@ -96,11 +125,29 @@ impl ProbeHistograms {
     pub(crate) fn in_tolerances(&self, readings: &[&Evidence]) -> Vec<Vec<f64>> {
         let after: Vec<Vec<f64>> = readings.iter().map(|reading| self.after(reading)).collect();
         let allowed = self.allowed(&after, 1.0);
-        let scaled = |after| {
-            let gains = self.gained(after).into_iter().zip(&allowed);
-            gains.map(|(gain, allowed)| gain / allowed).collect()
-        };
-        after.into_iter().map(scaled).collect()
+        after.into_iter().map(|after| self.in_units(after, &allowed)).collect()
+    }
+
+    /// The gains of all probes, given their entropies after a reading, in units of each.
+    pub(crate) fn in_units(&self, after: Vec<f64>, units: &[f64]) -> Vec<f64> {
+        self.gained(after).into_iter().zip(units).map(|(gain, unit)| gain / unit).collect()
+    }
+
+    /// By how much the gains by some readings differ in single precision, in units of each probe, for
+    /// the worst.
+    pub(crate) fn single_precision(&self, readings: &[&Evidence], units: &[f64]) -> f64 {
+        let mut worst = 0.0f64;
+        for (some, units) in self.histograms.chunks(LANES).zip(units.chunks(LANES)) {
+            let block = ProbeBlock::new(some);
+            for reading in readings {
+                let found = reading.excess().gain(&block.prior());
+                for (((h, u), found), unit) in some.iter().zip(found).zip(units) {
+                    let gain = -u.iter().sum::<f64>() - reading.entropy_after(h, u);
+                    worst = worst.max((f64::from(found) - gain).abs() / unit);
+                }
+            }
+        }
+        worst
     }
 
     /// The entropy of every probe \[nats\].

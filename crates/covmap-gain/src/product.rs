@@ -15,6 +15,7 @@ mod tables;
 
 use crate::Stencil;
 use crate::belief::Belief;
+use crate::layout::PlaneLayout;
 use crate::memory::Size;
 use crate::outcomes::{AskedRow, RowGains};
 use crate::sight::{GroupLikelihood, RasterBeam};
@@ -24,6 +25,7 @@ use covmap::lanes::Lanes;
 use covmap_model::SensorModel;
 use pulp::Arch;
 use sweep::Sweep;
+pub use tables::probed::{RangeInterpolation, TableErrors};
 
 /// Evaluates E\[I\] of many beams, and bounds it.
 #[derive(Debug, Clone)]
@@ -62,6 +64,11 @@ impl Product {
     /// How many rows of cells on either side of a row of view-points matter to its gains.
     pub(crate) fn border(&self) -> usize {
         self.sweep.border()
+    }
+
+    /// How its planes of gains lie.
+    pub(crate) fn planes(&self) -> PlaneLayout {
+        self.sweep.planes()
     }
 
     /// The gains of all beams of some rows, which are given in ascending order of y.

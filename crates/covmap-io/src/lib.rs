@@ -35,6 +35,7 @@ mod ron_file;
 mod shared_folder;
 mod signature;
 pub use chart::{Chart, ChartAxis, ChartPoint, Figure, HeatMap, Panel, Series};
+pub use chart::{Drawing, TextAnchor};
 pub use error::FileError;
 pub use escaped::{escaped, shown};
 pub use json::{read_json, write_json};

@@ -440,6 +440,12 @@ impl Planner {
         self.gains.stencil()
     }
 
+    /// What it knows of gains: after a decision, the gains that it evaluated for it or kept, and
+    /// bounds of the others.
+    pub fn gains(&self) -> &GainCache {
+        &self.gains
+    }
+
     /// The parameters.
     pub fn parameters(&self) -> &PlannerParameters {
         &self.parameters

@@ -1,8 +1,10 @@
 //! What a cache answers, once it was refreshed.
 
 use super::GainCache;
+use crate::belief::{PAD, padded};
 use crate::view_points::group_and_lane;
-use crate::{Stencil, ViewPoints};
+use crate::{MemoryLayout, Stencil, ViewPoints};
+use covmap::lanes::LANES;
 
 impl GainCache {
     /// The cells around a view-point.
@@ -31,6 +33,26 @@ impl GainCache {
     pub fn is_exact(&self, view_point: usize) -> bool {
         let (group, lane) = group_and_lane(self.grid.width(), view_point);
         self.groups[group].gain >> lane & 1 == 1
+    }
+
+    /// How many cells of a beam, in order of their distance, decide what the beam sees and gains from
+    /// the view-points of a group that were refreshed, of which this is one: a change of any other
+    /// cell leaves all of them as they are.
+    pub fn horizon(&self, view_point: usize, beam: usize) -> usize {
+        let (group, _) = group_and_lane(self.grid.width(), view_point);
+        usize::from(self.states[group * self.beams.len() + beam].horizon)
+    }
+
+    /// How what the cache keeps lies in memory.
+    pub fn layout(&self) -> MemoryLayout {
+        MemoryLayout {
+            lanes: LANES,
+            border: self.belief.border(),
+            raster_width: self.belief.raster_width(),
+            padding: PAD,
+            padded_width: padded(self.grid.width()),
+            planes: self.evaluator.planes(),
+        }
     }
 
     /// Whether a gain was met since this was last asked that is above its bound.

@@ -18,6 +18,7 @@ use super::tables::basis::Basis;
 use super::tables::needs::{NeededRun, OutcomeNeeds, RingNeeds};
 use super::tables::rings::{DistanceRing, rings};
 use crate::belief::Belief;
+use crate::layout::PlaneLayout;
 use crate::memory::Size;
 use crate::numbers::as_f64;
 use crate::outcomes::{AskedRow, RowGains};
@@ -106,6 +107,12 @@ impl Sweep {
     /// How many rows of cells on either side of a row of view-points matter.
     pub(super) fn border(&self) -> usize {
         self.layout.border
+    }
+
+    /// How the planes of gains lie.
+    pub(super) fn planes(&self) -> PlaneLayout {
+        let Layout { border, stride, row } = self.layout;
+        PlaneLayout { border, stride, row }
     }
 
     /// The gains of all beams of some rows, which are given in ascending order of y.

@@ -25,3 +25,5 @@ pub(super) mod beyond;
 pub(super) mod rings;
 
 pub(super) mod needs;
+
+pub(super) mod probed;

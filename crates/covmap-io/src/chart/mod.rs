@@ -4,6 +4,7 @@
 //! font that is shipped, and the same data make the same bytes.
 
 mod area;
+mod drawing;
 mod figure;
 mod heat;
 mod marks;
@@ -14,6 +15,7 @@ mod scene;
 mod svg;
 
 use crate::{ColorMap, FileError, Replace, write_file};
+pub use drawing::{Drawing, TextAnchor};
 use std::io;
 use std::path::Path;
 

@@ -18,7 +18,7 @@ use std::ops::Range;
 
 /// The gain of a mixture may be off by so much of what an interpolated one may, where the readings
 /// are those that tell most.
-const MIXTURE_TOLERANCE: f64 = 0.5;
+pub(super) const MIXTURE_TOLERANCE: f64 = 0.5;
 /// So many readings tell how large a basis must be, about.
 const SAMPLE: usize = 512;
 /// So many blocks of cells are looked through by one thread.

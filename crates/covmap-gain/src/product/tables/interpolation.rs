@@ -45,6 +45,13 @@ impl Nodes {
         Self { at: nodes.into_iter().map(|y| back(y).clamp(low, high)).collect(), weights }
     }
 
+    /// What the nodes, which were found with this shift, weigh at other points of their span.
+    pub(crate) fn like_at(&self, points: &[f64], shift: Option<f64>) -> Vec<Vec<f64>> {
+        let to = |x: f64| shift.map_or(x, |shift| libm::log(x + shift));
+        let nodes: Vec<f64> = self.at.iter().map(|x| to(*x)).collect();
+        points.iter().map(|x| lagrange(&nodes, to(*x))).collect()
+    }
+
     /// As few nodes as leave no probe's entropy after the reading that `evidence` makes of a point
     /// farther off than is allowed, times `leniency`; all points if that is not less.
     pub(crate) fn few(

@@ -69,14 +69,7 @@ pub(crate) struct OwnReading {
 /// All rings, nearest first, and the basis that their readings are mixtures of.
 pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> (Vec<DistanceRing>, Basis) {
     let probes = ProbeHistograms::of_model(model);
-    let count = (0..).find(|ring| {
-        stencil
-            .beams
-            .iter()
-            .all(|beam| members(beam, *ring, model.resolution()).start == beam.cells.len())
-    });
-    let build = |ring| RingBuilder::new(model, stencil, &probes, ring).build();
-    let built: Vec<UnmixedRing> = (0..count.unwrap_or(0)).map(build).collect();
+    let built = unmixed(model, stencil, &probes);
     let mut basis = Basis::default();
     let of_position = |position| {
         let readings = built.iter().flat_map(|built| &built.readings);
@@ -105,13 +98,29 @@ pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> (Vec<DistanceRing
     (built.into_iter().map(ring).collect(), basis)
 }
 
+/// All rings, nearest first, before their readings are mixtures.
+pub(super) fn unmixed(
+    model: &SensorModel,
+    stencil: &Stencil,
+    probes: &ProbeHistograms,
+) -> Vec<UnmixedRing> {
+    let count = (0..).find(|ring| {
+        stencil
+            .beams
+            .iter()
+            .all(|beam| members(beam, *ring, model.resolution()).start == beam.cells.len())
+    });
+    let build = |ring| RingBuilder::new(model, stencil, probes, ring).build();
+    (0..count.unwrap_or(0)).map(build).collect()
+}
+
 /// A ring before the readings of all rings are known, and with them the basis.
-struct UnmixedRing {
+pub(super) struct UnmixedRing {
     /// Without readings, and what is taken from a lattice.
-    ring: DistanceRing,
+    pub(super) ring: DistanceRing,
     /// Those of the lattice among them, with where the ring's cells lie.
-    readings: Vec<(CellPosition, Evidence)>,
-    lattice: Option<Lattice>,
+    pub(super) readings: Vec<(CellPosition, Evidence)>,
+    pub(super) lattice: Option<Lattice>,
 }
 
 /// A beam's cells in a ring, by their rank: every cell is in one, also where rounding leaves it out of the rings
@@ -130,7 +139,7 @@ fn members(beam: &BeamStencil, ring: usize, resolution: f64) -> Range<usize> {
 
 /// Where a cell lies from the end of an outcome.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum CellPosition {
+pub(super) enum CellPosition {
     InFront,
     AtEnd,
     Behind,
@@ -138,12 +147,12 @@ enum CellPosition {
     NoEnd,
 }
 
-struct RingBuilder<'a> {
+pub(super) struct RingBuilder<'a> {
     model: &'a SensorModel,
     stencil: &'a Stencil,
     probes: &'a ProbeHistograms,
     /// A ring of few cells may be less exact: what counts is the sum over all.
-    leniency: f64,
+    pub(super) leniency: f64,
     /// The ring's cells of each beam.
     cells: Vec<Range<usize>>,
     /// All distances of these cells, in ascending order.
@@ -153,7 +162,7 @@ struct RingBuilder<'a> {
 }
 
 impl<'a> RingBuilder<'a> {
-    fn new(
+    pub(super) fn new(
         model: &'a SensorModel,
         stencil: &'a Stencil,
         probes: &'a ProbeHistograms,
@@ -219,16 +228,24 @@ impl<'a> RingBuilder<'a> {
         self.covered(k).any(|(beam, i)| is_wanted(self.stencil.beams[beam].cells[i].cell_distance))
     }
 
+    /// The nodes of the ranges from the `nearest` beyond the ring on, their shift, and the distance
+    /// of cells for which they are chosen \[m\].
+    pub(super) fn in_range(&self, nearest: usize) -> (Nodes, Option<f64>, f64) {
+        let (model, probes) = (self.model, (self.probes, self.leniency));
+        let (low, high) = (self.distances[0], self.distances[self.distances.len() - 1]);
+        let middle = 0.5 * (low + high);
+        let gamma = model.parameters().update.product().map(|product| product.gamma);
+        let shift = gamma.and_then(|gamma| shift(&gamma, middle));
+        let ranges = &self.stencil.ranges[nearest..];
+        let at = |range| Evidence::new(model, middle, Outcome::Echo(range));
+        (Nodes::few(ranges, shift, probes, at), shift, middle)
+    }
+
     /// All outcomes from the `nearest` beyond the ring on.
     fn beyond(&mut self, nearest: usize) -> Lattice {
         let (model, probes) = (self.model, (self.probes, self.leniency));
-        let ranges = &self.stencil.ranges[nearest..];
-        let (low, high) = (self.distances[0], self.distances[self.distances.len() - 1]);
-        let middle = 0.5 * (low + high);
         let at = |distance, range| Evidence::new(model, distance, Outcome::Echo(range));
-        let gamma = model.parameters().update.product().map(|product| product.gamma);
-        let shift = gamma.and_then(|gamma| shift(&gamma, middle));
-        let in_range = Nodes::few(ranges, shift, probes, |range| at(middle, range));
+        let (in_range, ..) = self.in_range(nearest);
         let needed = |range: &f64| {
             Nodes::few(&self.distances, None, probes, |distance| at(distance, *range)).at.len()
         };
