@@ -1,7 +1,8 @@
-//! `figure` and `table`: one of the paper's figures, or its table, from its own experiment.
+//! `figure` and `table`: one of the paper's figures, or its table, from its own experiment; and how the
+//! expected information gain is computed.
 
 use crate::arguments::{Experiments, Figure, Table};
-use crate::figures::Output;
+use crate::figures::{Output, gain};
 use crate::interrupt::{self, Interrupt};
 use crate::paper::{Session, drawing};
 use crate::say;
@@ -15,6 +16,7 @@ pub(crate) fn run(arguments: &Figure) -> Result<ExitCode> {
         "3" => drawing::models(output).map(drop),
         "5" => drawing::corridor(session, output).map(drop),
         "6" => drawing::counting(session, output).map(drop),
+        "gain" => gain::write(output, session.quick),
         _ => drawing::strategies(session, output).map(drop),
     })
 }

@@ -54,10 +54,11 @@ mod memory;
 
 pub use cache::{GAIN_TOLERANCE, GainCache, Upkeep};
 pub use layout::{MemoryLayout, PlaneLayout};
-pub use literal::expected_information_gain;
+pub use literal::{expected_information_gain, imagined_causes};
 pub use product::{RangeInterpolation, TableErrors};
 pub use range_likelihood::{
     InformationGain, RangeLikelihood, RangePrediction, range_likelihood, reflection,
 };
+pub use sight::NEGLIGIBLE;
 pub use stencil::{BeamError, BeamStencil, Stencil, StencilCell};
 pub use view_points::ViewPoints;

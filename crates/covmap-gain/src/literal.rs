@@ -75,6 +75,30 @@ struct Imagined<'a> {
     causes: Option<(&'a CauseParameters, Causes)>,
 }
 
+/// Who would have caused an outcome of a beam from a view-point, by the map as it is; `None` with the
+/// product of Eq. (9), which asks for no cause.
+pub fn imagined_causes(
+    map: &CoverageMap,
+    model: &SensorModel,
+    beam: &BeamStencil,
+    view_point: Cell,
+    outcome: Outcome,
+) -> Option<Causes> {
+    let parameters = model.parameters().update.cause()?;
+    let (end, reach) = match outcome {
+        Outcome::Echo(d) => (d, f64::INFINITY),
+        _ => (f64::INFINITY, model.reach(outcome) + 1e-9),
+    };
+    let mut clues = Clues::new(parameters, model.resolution(), end);
+    for met in beam.cells.iter().take_while(|c| c.cell_distance <= reach) {
+        let cell = view_point.offset(met.dx, met.dy);
+        if map.grid().index(cell).is_some() {
+            clues.add(met.met(), map.is_known(cell).then(|| map.mean(cell)));
+        }
+    }
+    Some(clues.of(outcome))
+}
+
 impl<'a> Imagined<'a> {
     fn new(
         map: &CoverageMap,
@@ -83,20 +107,8 @@ impl<'a> Imagined<'a> {
         view_point: Cell,
         outcome: Outcome,
     ) -> Self {
-        let causes = model.parameters().update.cause().map(|parameters| {
-            let (end, reach) = match outcome {
-                Outcome::Echo(d) => (d, f64::INFINITY),
-                _ => (f64::INFINITY, model.reach(outcome) + 1e-9),
-            };
-            let mut clues = Clues::new(parameters, model.resolution(), end);
-            for met in beam.cells.iter().take_while(|c| c.cell_distance <= reach) {
-                let cell = view_point.offset(met.dx, met.dy);
-                if map.grid().index(cell).is_some() {
-                    clues.add(met.met(), map.is_known(cell).then(|| map.mean(cell)));
-                }
-            }
-            (parameters, clues.of(outcome))
-        });
+        let causes = imagined_causes(map, model, beam, view_point, outcome);
+        let causes = model.parameters().update.cause().zip(causes);
         Self { model, outcome, causes }
     }
 

@@ -14,7 +14,7 @@ pub(crate) type Lanes64 = [f64; LANES];
 
 /// Outcomes less likely than this are left out of E\[I\]: of some hundred outcomes, all of them
 /// together are less than a hundredth of what a decision tolerates.
-const NEGLIGIBLE: f64 = 1e-9;
+pub const NEGLIGIBLE: f64 = 1e-9;
 
 /// A beam over the bordered rasters of a [`Belief`]: the same from all view-points.
 #[derive(Debug, Clone)]

@@ -11,9 +11,13 @@ DIR/figureN.svg and .png are the figure, DIR/figureN*.csv the numbers behind it.
 need campaigns, which are taken from DIR/campaigns as far as they are done there. Figure 5 repeats a
 recorded run of each technique for its map; figure 7 (c) and (d) are the recorded paths.
 
+`gain` draws how the expected information gain is computed, as docs/gain.md explains it, from a run
+in scenarios/lab.ron: DIR/gain-*.svg and .png.
+
 Examples:
   cargo xtask figure 1
   cargo xtask figure 7 --quick --out out/quick
+  cargo xtask figure gain --out docs/images
 ";
 
 pub(super) const PAPER_EXAMPLES: &str = "\
@@ -38,8 +42,8 @@ interrupted with Ctrl-C.
 
 #[derive(Debug, Args)]
 pub(crate) struct Figure {
-    /// Which: 1, 2, 3, 5, 6 or 7
-    #[arg(value_parser = ["1", "2", "3", "5", "6", "7"])]
+    /// Which: 1, 2, 3, 5, 6 or 7 of the paper, or gain, the six of docs/gain.md
+    #[arg(value_parser = ["1", "2", "3", "5", "6", "7", "gain"])]
     pub(crate) number: String,
     #[command(flatten)]
     pub(crate) common: Experiments,

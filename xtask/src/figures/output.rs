@@ -1,7 +1,7 @@
 //! Where figures and tables go.
 
 use anyhow::Result;
-use covmap_io::{Figure, FileError, Replace, SharedFolder};
+use covmap_io::{Drawing, Figure, FileError, Replace, SharedFolder};
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -39,6 +39,12 @@ impl Output {
     pub(crate) fn figure(&self, name: &str, figure: &Figure) -> Result<()> {
         self.write(&format!("{name}.svg"), figure.to_svg())?;
         self.image(name, figure.to_png()).map(drop)
+    }
+
+    /// Writes `NAME.svg` and `NAME.png`.
+    pub(crate) fn drawing(&self, name: &str, drawing: &Drawing) -> Result<()> {
+        self.write(&format!("{name}.svg"), drawing.to_svg())?;
+        self.image(name, drawing.to_png()).map(drop)
     }
 
     /// Writes `NAME.png`, and returns its bytes.

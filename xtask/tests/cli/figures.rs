@@ -27,6 +27,25 @@ fn figures_are_drawn_with_the_numbers_behind_them() {
 }
 
 #[test]
+fn the_figures_of_gains_are_drawn_from_a_run_and_repeat() {
+    let shell = Shell::new();
+    for folder in ["f", "g"] {
+        shell.expect(&format!("figure gain --quick --quiet --out {folder}"), 0);
+    }
+    let read = |path: String| std::fs::read(shell.path(&path)).unwrap();
+    for figure in ["beam", "nodes", "memory", "decision", "errors", "sums"] {
+        for end in ["svg", "png"] {
+            let [first, second] = ["f", "g"].map(|dir| read(format!("{dir}/gain-{figure}.{end}")));
+            assert!(first == second, "{figure}.{end}");
+        }
+        let svg = String::from_utf8(read(format!("f/gain-{figure}.svg"))).unwrap();
+        assert!(svg.starts_with("<svg") && !svg.contains("NaN"), "{figure}");
+    }
+    let errors = String::from_utf8(read("f/gain-errors.svg".into())).unwrap();
+    assert_eq!(errors.matches("0: the same bits").count(), 2);
+}
+
+#[test]
 fn occupancy_goes_to_one_where_a_fifth_is_covered() {
     let shell = Shell::new();
     shell.expect("figure 1 --quick --quiet --out f", 0);
@@ -43,7 +62,7 @@ fn occupancy_goes_to_one_where_a_fifth_is_covered() {
 fn what_is_no_figure_of_ours_and_what_has_no_campaign_is_refused() {
     let shell = Shell::new();
     let error = |line: &str| shell.expect(line, 2).err;
-    assert!(error("figure 4").contains("possible values: 1, 2, 3, 5, 6, 7"));
+    assert!(error("figure 4").contains("possible values: 1, 2, 3, 5, 6, 7, gain"));
     assert!(error("table 2").contains("possible values: 1"));
     assert!(error("figure 7 --quiet --out f").contains("configs/fig7.ron"));
     shell.write("file", "");

@@ -21,7 +21,7 @@ const REDUCED: f64 = 0.3;
 /// so many for every cell would take more memory than it is worth.
 const MOST_AT_END: usize = 24;
 /// See [`RingBuilder::leniency`].
-const MOST_LENIENT: f64 = 10.0;
+pub(super) const MOST_LENIENT: f64 = 10.0;
 
 /// What the beams see at about one distance.
 #[derive(Debug, Clone)]
