@@ -156,6 +156,11 @@ impl Cause {
         }
     }
 
+    /// The shares of "passed" at which gains are interpolated.
+    pub(crate) fn shares(&self) -> Vec<f64> {
+        self.front.as_ref().map(Polynomials::shares).unwrap_or_default()
+    }
+
     /// Whether there are bounds.
     pub(crate) fn has_bound(&self) -> bool {
         self.ceilings.is_some()

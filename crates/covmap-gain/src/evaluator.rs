@@ -74,6 +74,14 @@ impl Evaluator {
         }
     }
 
+    /// At which shares gains are interpolated, if they are.
+    pub(crate) fn shares(&self) -> Vec<f64> {
+        match self {
+            Self::Product(_) => Vec::new(),
+            Self::Cause(cause) => cause.shares(),
+        }
+    }
+
     /// How its planes of gains lie, if it has any.
     pub(crate) fn planes(&self) -> Option<PlaneLayout> {
         match self {

@@ -14,7 +14,7 @@
 
 use crate::belief::BlockPrior;
 use crate::numbers::to_f32;
-use covmap::lanes::{LANES, Lanes, add_scaled, ln, map};
+use covmap::lanes::{LANES, Lanes, add_scaled, fused, ln, map};
 use covmap_model::{Outcome, SensorModel};
 use pulp::{Simd, WithSimd};
 
@@ -137,7 +137,7 @@ pub(crate) fn w<const N: usize>(e: &[f32; N]) -> [f32; N] {
     let mut out = [0.0; N];
     for i in 0..N {
         let e = e[i];
-        let far = z[i] * log[i] - (z[i] - 1.0);
+        let far = fused(z[i], log[i], 1.0 - z[i]);
         out[i] = if e < FEW { few(e) } else { far };
     }
     out
@@ -149,8 +149,9 @@ pub(crate) const FEW: f32 = 0.2;
 /// w(e) by its series, for e up to [`FEW`].
 #[inline(always)]
 pub(crate) fn few(e: f32) -> f32 {
-    let tail = 1.0 / 20.0 - e * (1.0 / 30.0 - e * (1.0 / 42.0 - e * (1.0 / 56.0)));
-    e * e * (0.5 - e * (1.0 / 6.0 - e * (1.0 / 12.0 - e * tail)))
+    let terms = [1.0 / 42.0, -1.0 / 30.0, 1.0 / 20.0, -1.0 / 12.0, 1.0 / 6.0, -0.5];
+    let sum = terms.into_iter().fold(-1.0 / 56.0, |sum, term| fused(sum, e, term));
+    -e * e * sum
 }
 
 #[cfg(test)]

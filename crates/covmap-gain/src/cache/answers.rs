@@ -55,6 +55,12 @@ impl GainCache {
         }
     }
 
+    /// The shares of "passed" at which the gain of a cell is interpolated, with the update by cause;
+    /// none with that of Eq. (9), or where all cells are evaluated as they are.
+    pub fn interpolated_shares(&self) -> Vec<f64> {
+        self.evaluator.shares()
+    }
+
     /// Whether a gain was met since this was last asked that is above its bound.
     pub fn take_exceeded(&mut self) -> bool {
         std::mem::take(&mut self.exceeded)

@@ -4,7 +4,7 @@
 use crate::belief::Prior;
 use crate::evidence::{FEW, few, gains, w};
 use crate::numbers::{as_f64, to_f32};
-use covmap::lanes::{LANES, Lanes, add_product, map};
+use covmap::lanes::{LANES, Lanes, add_product, fused, map};
 use covmap_model::{CauseParameters, gaussian};
 
 /// What an outcome may say of a cell.
@@ -100,7 +100,7 @@ impl AtEnd {
             // Loops of one result each become vector instructions.
             let mut here = [0.0; LANES];
             for lane in 0..LANES {
-                here[lane] = by_end[lane] * ended + by_free[lane] * free;
+                here[lane] = fused(by_end[lane], *ended, by_free[lane] * free);
             }
             add_product(&mut above, h, &here);
             add_product(&mut terms, h_hat, &here);

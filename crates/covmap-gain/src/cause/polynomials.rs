@@ -1,8 +1,8 @@
 //! The gain of every cell as a function of one share, as a polynomial.
 //!
 //! For a kernel K the evidence of a cell is (1 − x)·U + x·K, and its gain an analytic function of
-//! the share x that is 0 at x = 0, and so is the slope of a relative entropy. It is interpolated in Chebyshev's nodes of \[0, x_max\], as many as
-//! the gains of histograms of all kinds need to be met.
+//! the share x that is 0 at x = 0, and so is the slope of a relative entropy. It is interpolated in
+//! Chebyshev's nodes of \[0, x_max\], as many as the gains of histograms of all kinds need to be met.
 
 use super::fronts::FrontSums;
 use crate::InformationGain;
@@ -13,7 +13,7 @@ use crate::numbers::{as_f64, to_f32};
 use crate::probes::ProbeHistograms;
 use crate::view_points::groups_per_row;
 use covmap::Grid;
-use covmap::lanes::{LANES, Lanes};
+use covmap::lanes::{LANES, Lanes, fused};
 use pulp::Arch;
 use rayon::prelude::*;
 
@@ -83,6 +83,11 @@ impl Polynomials {
     /// About how many bytes this takes.
     pub(super) fn bytes(size: &Size) -> f64 {
         4.0 * as_f64(MOST) * size.padded()
+    }
+
+    /// The shares at which gains are interpolated.
+    pub(super) fn shares(&self) -> Vec<f64> {
+        nodes(self.degree()).iter().map(|t| t * self.largest).collect()
     }
 
     fn degree(&self) -> usize {
@@ -183,7 +188,7 @@ impl FrontSums for PowerSums<'_> {
             factor *= scale;
             let coefficient = lanes_at(coefficients, power * stride);
             for lane in 0..LANES {
-                gain[lane] += coefficient[lane] * (factor * sum[lane]);
+                gain[lane] = fused(coefficient[lane], factor * sum[lane], gain[lane]);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! How the gain of a cell is interpolated: over the range, and over the share of "passed".
 
 use super::moment::Moment;
-use super::one_cell::{Gained, gains, kinds};
+use super::one_cell::{Gained, at_nodes, gains, kinds};
 use anyhow::{Context, Result};
 use covmap_explore::Config;
 use covmap_gain::RangeInterpolation;
@@ -22,6 +22,11 @@ pub(super) fn figure(by_cause: &Config, of_product: &Moment, quick: bool) -> Res
         .into_iter()
         .map(|kind| Ok((kind.name, gains(by_cause, &kind, if quick { 12 } else { 120 })?)))
         .collect::<Result<_>>()?;
+    let nodes: Vec<Gained> = kinds(bins)
+        .iter()
+        .map(|kind| at_nodes(by_cause, kind))
+        .collect::<Result<Vec<_>>>()?
+        .concat();
     let title = format!("Eq. (9): an untouched cell at d^l = {:.2} m", over.cell_distance);
     Ok(Figure {
         title: "The gain of a cell is smooth, and a few values of it are enough".into(),
@@ -32,7 +37,7 @@ pub(super) fn figure(by_cause: &Config, of_product: &Moment, quick: bool) -> Res
         ),
         panels: vec![
             gain_over_range(&over, title).into(),
-            gain_over_share(&of_share).into(),
+            gain_over_share(&of_share, &nodes).into(),
             off_over_range(&over).into(),
             off_over_share(&of_share).into(),
         ],
@@ -80,16 +85,17 @@ fn off_over_range(over: &RangeInterpolation) -> Chart {
     }
 }
 
-fn gain_over_share(of_share: &[(&str, Vec<Gained>)]) -> Chart {
+fn gain_over_share(of_share: &[(&str, Vec<Gained>)], nodes: &[Gained]) -> Chart {
     let curves = of_share
         .iter()
         .map(|(name, gained)| line(name, gained.iter().map(|g| (g.share, g.literal))));
-    let some = of_share.iter().flat_map(|(_, gained)| gained.iter().skip(4).step_by(10));
-    let answers = marks("the evaluator’s answers", some.map(|g| (g.share, g.fast)));
+    let answers = marks("nodes", nodes.iter().map(|g| (g.share, g.fast)));
     Chart {
         title: "By cause: three cells next to the sensor".into(),
-        subtitle: "lines: Eq. (13) as printed; marks: what the evaluator makes of its polynomials"
-            .into(),
+        subtitle: format!(
+            "lines: Eq. (13) as printed; marks: the evaluator’s answers at its {} nodes",
+            nodes.len() / of_share.len()
+        ),
         x: ChartAxis { from: Some(0.0), ..ChartAxis::new("share x of “passed”") },
         y: ChartAxis::new("gain [nats]"),
         series: curves.chain([answers]).collect(),

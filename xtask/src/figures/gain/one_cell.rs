@@ -14,6 +14,13 @@ use covmap_model::{ModelParameters, SensorModel};
 use covmap_sonar::SonarRing;
 use nalgebra::Point2;
 
+/// No echo is the only outcome.
+const PREDICTION: RangePrediction = RangePrediction {
+    gain: covmap_gain::InformationGain::Eq14,
+    unknown_reflection: 0.0,
+    uniform_share: 0.0,
+};
+
 /// A histogram with what it is called.
 #[derive(Debug, Clone)]
 pub(super) struct Kind {
@@ -64,6 +71,18 @@ pub(super) fn gains(config: &Config, kind: &Kind, samples: usize) -> Result<Vec<
     (1..=samples).map(sample).collect()
 }
 
+/// What a kind of cell gains by the shares at which the evaluator interpolates.
+pub(super) fn at_nodes(config: &Config, kind: &Kind) -> Result<Vec<Gained>> {
+    let (ring, _) = config.build()?;
+    let model = SensorModel::new(&config.model, &ring, config.resolution)?;
+    let grid = Grid::new(Point2::origin(), config.resolution, 1, 1)?;
+    let nodes = GainCache::new(&model, 0.0, grid, PREDICTION, Upkeep::OnDemand)?;
+    let most =
+        config.model.update.cause().context("it has no shares but with the cause")?.free.share;
+    let of_share = |share: f64| sample(config, &ring, kind, share / most);
+    nodes.interpolated_shares().into_iter().map(of_share).collect()
+}
+
 /// One share: ν of a model without an echo says how much is "passed".
 fn sample(config: &Config, ring: &SonarRing, kind: &Kind, share: f64) -> Result<Gained> {
     let r = config.resolution;
@@ -91,19 +110,14 @@ fn sample(config: &Config, ring: &SonarRing, kind: &Kind, share: f64) -> Result<
     if let Some(evidence) = &kind.evidence {
         map.multiply(target, evidence);
     }
-    let prediction = RangePrediction {
-        gain: covmap_gain::InformationGain::Eq14,
-        unknown_reflection: 0.0,
-        uniform_share: 0.0,
-    };
-    let mut cache = GainCache::new(&model, 0.0, grid, prediction, Upkeep::OnDemand)?;
+    let mut cache = GainCache::new(&model, 0.0, grid, PREDICTION, Upkeep::OnDemand)?;
     for cell in grid.cells() {
         cache.update(&map, cell);
     }
     let index = grid.index(home).context("a view-point")?;
     cache.refresh_gains(&ViewPoints::one(&grid, index));
     let beams = f64::from(u32::try_from(stencil.beams.len())?);
-    let literal = expected_information_gain(&map, &model, &stencil, prediction, home);
+    let literal = expected_information_gain(&map, &model, &stencil, PREDICTION, home);
     Ok(Gained {
         share: said(&seen) * share,
         literal: beams * literal,
