@@ -21,9 +21,15 @@ fn decisions(scenario: &Path, resolution: f64, strategy: Strategy, scans: usize)
     let (mut all, mut others) = (0, 0);
     explore(&mission, &mut robot, &mut |event, view| {
         if let Event::Decision { from, decision, .. } = event {
-            let table = view.planner.clone().candidate_table(*from);
+            let mut planner = view.planner.clone();
+            let table = planner.candidate_table(view.map, *from);
+            // Who would measure in vain is passed over.
+            let promises =
+                |cell| view.map.grid().index(cell).is_some_and(|i| planner.gains().is_promising(i));
+            assert!(promises(decision.target));
             let score = |cell| table.iter().find(|r| r.cell == cell).map(|record| record.score);
-            let best = table.iter().map(|r| r.score).fold(f64::NEG_INFINITY, f64::max);
+            let promising = table.iter().filter(|r| promises(r.cell));
+            let best = promising.map(|r| r.score).fold(f64::NEG_INFINITY, f64::max);
             // Ties are decided by the literal equations.
             let off = 4.0 * GAIN_TOLERANCE * best.abs().max(1.0);
             all += 1;

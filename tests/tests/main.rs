@@ -7,6 +7,7 @@ mod docs;
 mod fitting;
 mod golden;
 mod shipped_files;
+mod standing_still;
 mod turned_buildings;
 
 use std::path::{Path, PathBuf};

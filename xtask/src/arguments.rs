@@ -17,11 +17,11 @@ pub(crate) use safe_map::SafeMap;
 use crate::campaign::{Shard, VERSION};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_model::Registers;
-use covmap_plan::Strategy;
-use nalgebra::Isometry2;
+use covmap_plan::{Effort, Strategy};
+use nalgebra::{Isometry2, Point2};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use values::{every, every_degrees, named_file, resolution, start, while_driving};
+use values::{every, every_degrees, named_file, place, resolution, start, while_driving};
 
 const EXIT_CODES: &str = "\
 Exit codes:
@@ -43,7 +43,7 @@ The folder that is written:
   truth.png                 the exact coverage of every cell
   occupancy.png             the log-odds occupancy grid of the same scans
   partial.png, .svg         truth, coverage and occupancy where walls cut through cells
-  certificate.png           why there is nothing left to do, cell by cell
+  certificate.png, .csv     why there is nothing left to do, cell by cell
   reliability.svg, .png     whether the map knows how right it is
 It is DIR.partial while it is being written, with a valid trace at any time. The same run
 replaces its own DIR; that of another run is replaced with --force only, and any other never.
@@ -61,7 +61,7 @@ five best are printed with both terms of Eq. (16), and DIR/explain-N.png shows E
 candidates, the five best, and the way to the one that was chosen.
 
 Example:
-  cargo xtask explain out/office-IG_CL-0.3-1 --step 12
+  cargo xtask explain out/office-IG_CL-0.1-1 --step 12
 ";
 
 const MAP_EXAMPLES: &str = "\
@@ -260,9 +260,13 @@ pub(crate) struct Explore {
     pub(crate) config: Option<PathBuf>,
     /// How view-points are chosen: CL, IG, IG_WIN:R (radius in metres), IG_CL:A (weight of the
     /// gain), COUNT:N (scans), COUNT:N:D0 (metres) [default: as the configuration says,
-    /// IG_CL:0.3]
+    /// IG_CL:0.1]
     #[arg(long, value_name = "NAME")]
     pub(crate) strategy: Option<Strategy>,
+    /// How much is measured before a cell is known well enough [default: as the configuration says,
+    /// standard]
+    #[arg(long, value_name = "EFFORT")]
+    pub(crate) effort: Option<EffortName>,
     /// Seed of the noise
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
@@ -322,10 +326,34 @@ pub(crate) struct Explain {
     /// The folder that `explore` wrote (or the DIR.partial that it is writing)
     pub(crate) dir: PathBuf,
     /// The number of the decision, counted from 0 as in the trace
-    #[arg(long, value_name = "N")]
-    pub(crate) step: usize,
+    #[arg(long, value_name = "N", required_unless_present = "cell")]
+    pub(crate) step: Option<usize>,
+    /// Tell instead what became of the cell at this place [m], and what one more scan could change
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true, conflicts_with = "step")]
+    pub(crate) cell: Option<Point2<f64>>,
     #[command(flatten)]
     pub(crate) force: Force,
+}
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EffortName {
+    /// The floor plan, with a third of the scans of thorough
+    Quick,
+    /// Half of them
+    Standard,
+    /// The best map
+    Thorough,
+}
+
+impl EffortName {
+    pub(crate) fn effort(self) -> Effort {
+        match self {
+            Self::Quick => Effort::Quick,
+            Self::Standard => Effort::Standard,
+            Self::Thorough => Effort::Thorough,
+        }
+    }
 }
 
 /// Which sensors of a log are read.

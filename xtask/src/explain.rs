@@ -4,15 +4,21 @@ use crate::arguments::Explain;
 use crate::input::about;
 use crate::replay::{Moment, replay};
 use crate::trace_file::{self, Trace};
-use crate::{explain_picture, say};
+use crate::{certificate_file, explain_picture, say};
 use anyhow::Result;
 use covmap_io::write_file;
 use covmap_plan::{CandidateRecord, Strategy};
 use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Explain) -> Result<ExitCode> {
-    let Explain { dir, step, force } = arguments;
+    let Explain { dir, step, cell, force } = arguments;
     let path = trace_file::in_folder(dir)?;
+    let step = &step.unwrap_or(0);
+    if let Some(cell) = cell {
+        let grid = Trace::read(&path, 0)?.header.grid;
+        say::line(certificate_file::why(&dir.join("certificate.csv"), &grid, *cell)?);
+        return Ok(ExitCode::SUCCESS);
+    }
     let trace = Trace::read(&path, *step)?;
     let moment = replay(&trace, &path)?;
     let picture = dir.join(format!("explain-{step}.png"));

@@ -83,6 +83,9 @@ fn overridden(mut config: Config, arguments: &Explore) -> Config {
     if let Some(strategy) = arguments.strategy {
         config.planner.strategy = strategy;
     }
+    if let Some(effort) = arguments.effort {
+        config.planner = config.planner.with_effort(effort.effort());
+    }
     if let Some(resolution) = arguments.resolution {
         config.resolution = resolution;
     }
@@ -109,6 +112,7 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
         Some(task.mission.config.planner.strategy.file_name()),
         Some(task.seed.to_string()),
         other.map(output::stem),
+        arguments.effort.map(|effort| format!("{effort:?}").to_lowercase()),
         finer.map(|resolution| format!("r{resolution}")),
         start,
         while_driving.map(|every| format!("every{every}")),

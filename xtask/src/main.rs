@@ -7,6 +7,7 @@
 mod arguments;
 mod bench;
 mod campaign;
+mod certificate_file;
 mod compare;
 mod csv_file;
 mod explain;

@@ -7,7 +7,7 @@ use crate::way::{Follower, Leg};
 use anyhow::{Result, anyhow, bail};
 use covmap::{CoverageMap, Grid, GridError};
 use covmap_io::log::{Account, LogError, LogFrame, LogOptions, LogReader, Sensor};
-use covmap_model::{OccupancyGrid, OccupancyParameters, SensorModel, integrate, integrate_body};
+use covmap_model::{Looks, OccupancyGrid, OccupancyParameters, SensorModel, integrate_body};
 use covmap_sonar::SonarRing;
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::path::{Path, PathBuf};
@@ -198,6 +198,7 @@ impl Survey {
 struct MappedSensor {
     ring: Arc<SonarRing>,
     model: SensorModel,
+    looks: Looks,
     last_used: Option<Isometry2<f64>>,
 }
 
@@ -231,7 +232,12 @@ impl Mapper {
         stride: Stride,
         body: Option<f64>,
     ) -> Result<Self> {
-        let sensor = |(ring, model)| MappedSensor { ring, model, last_used: None };
+        let sensor = |(ring, model)| MappedSensor {
+            ring,
+            looks: Looks::new(&model),
+            model,
+            last_used: None,
+        };
         Ok(Self {
             map: CoverageMap::new(grid, bins)?,
             occupancy: OccupancyGrid::new(grid, OccupancyParameters::default()),
@@ -268,7 +274,7 @@ impl Mapper {
         }
         sensor.last_used = Some(pose);
         self.scans += 1;
-        integrate(&sensor.model, &mut self.map, &frame.scan);
+        sensor.looks.integrate(&sensor.model, &mut self.map, &frame.scan);
         self.occupancy.integrate(&sensor.model, &frame.scan);
         true
     }

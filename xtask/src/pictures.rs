@@ -179,7 +179,11 @@ impl Pictures<'_> {
             if status == CellStatus::NotSeen && count == 0 {
                 continue;
             }
-            picture.key(Key::Fill(status_color(status)), &format!("{name}: {count}"));
+            let most = self.run.most_promised(status).filter(|_| status == CellStatus::Exhausted);
+            let most = most.map_or_else(String::new, |most| {
+                format!(" (one more scan: at most {most:.2} nats)")
+            });
+            picture.key(Key::Fill(status_color(status)), &format!("{name}: {count}{most}"));
         }
         picture
     }

@@ -71,7 +71,7 @@ fn look(mission: &Mission, from: Cell, decision: &Decision, view: &View<'_>) -> 
         scans: view.scans,
         from,
         decision: decision.clone(),
-        candidates: view.planner.clone().candidate_table(from),
+        candidates: view.planner.clone().candidate_table(view.map, from),
     }
 }
 

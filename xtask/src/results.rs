@@ -1,9 +1,9 @@
 //! What a run leaves behind.
 
 use crate::explore::Task;
-use crate::partial;
 use crate::pictures::Pictures;
 use crate::reliability_charts;
+use crate::{certificate_file, partial};
 use anyhow::Result;
 use covmap::{Cell, CoverageMap};
 use covmap_explore::{CutOff, Run, Summary, Truth};
@@ -78,6 +78,7 @@ pub(crate) fn write(
     pictures.errors(&run.bumped_at).save(folder.path("errors.png"))?;
     pictures.occupancy()?.save(folder.path("occupancy.png"))?;
     pictures.certificate().save(folder.path("certificate.png"))?;
+    certificate_file::write(&folder.path("certificate.csv"), run)?;
     partial::figure(mission, (run, map), &truth, &summary)?
         .save(folder.path("partial.svg"), folder.path("partial.png"))?;
     let measured = measured(map, &truth);

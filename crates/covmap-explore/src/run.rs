@@ -2,8 +2,8 @@
 
 use crate::{Event, Mission, MissionError, Robot, standing_place};
 use covmap::{Cell, Change, CoverageMap, Raster};
-use covmap_model::{Body, BodyEvent, SensorModel, integrate};
-use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Reach};
+use covmap_model::{Body, BodyEvent, Looks, SensorModel};
+use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Promise, Reach};
 use covmap_sonar::{Range, Scan};
 use covmap_world::Drive;
 use nalgebra::{Isometry2, Point2};
@@ -37,6 +37,8 @@ pub struct Run {
     pub map: CoverageMap,
     /// What became of every cell.
     pub certificate: Raster<CellStatus>,
+    /// What one more scan, from a place in reach, is expected to change about each cell.
+    pub promises: Raster<Option<Promise>>,
     /// Where the robot could drive, as it saw it in the end.
     pub reach: Raster<Reach>,
     /// Every scan, in order.
@@ -58,6 +60,16 @@ pub struct Run {
     pub counts: Raster<u32>,
     /// How many cells were given up by the cap on counted scans.
     pub capped_cells: usize,
+}
+
+impl Run {
+    /// The most that one more scan is expected to lower the entropy of some cell of a status by
+    /// \[nats\]; `None` if there is none, or nothing is known of that.
+    pub fn most_promised(&self, status: CellStatus) -> Option<f64> {
+        let of = self.certificate.iter().filter(|(_, is)| **is == status);
+        let change = |(cell, _): (Cell, &CellStatus)| Some((*self.promises.get(cell)?)?.change);
+        of.filter_map(change).reduce(f64::max)
+    }
 }
 
 /// What can be looked at while a run goes on.
@@ -102,6 +114,7 @@ struct Explorer<'a, R, H> {
     robot: &'a mut R,
     hook: &'a mut H,
     model: SensorModel,
+    looks: Looks,
     map: CoverageMap,
     body: Body,
     planner: Planner,
@@ -146,6 +159,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
             mission,
             robot,
             hook,
+            looks: Looks::new(&model),
             model,
             map,
             body: Body::new(*grid, config.robot.radius),
@@ -217,7 +231,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         let pose = Isometry2::new(self.at.coords, self.mission.start.rotation.angle());
         let time = self.path_length / self.mission.config.robot.speed;
         let scan = Scan { pose, time, ranges: self.robot.sense(&pose) };
-        let changes = integrate(&self.model, &mut self.map, &scan);
+        let changes = self.looks.integrate(&self.model, &mut self.map, &scan);
         let changes = self.body.hold(&mut self.map, changes);
         self.planner.observe(&self.map, &scan, &changes);
         self.since_scan = 0.0;
@@ -331,6 +345,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         Run {
             ending,
             certificate: self.planner.certificate(&self.map, self.cell),
+            promises: self.planner.promises_of(self.cell),
             reach: self.planner.reach(self.cell),
             counts: self.planner.counted_scans(),
             map: self.map,

@@ -65,6 +65,10 @@ pub enum Parameter {
     Beyond,
     /// ν: how surely a beam without an echo passed.
     NoEchoShare,
+    /// ρ_0: how much a second reading from one place repeats the first.
+    RepeatsShare,
+    /// λ: how far they share errors \[m\].
+    RepeatsDistance,
 }
 
 impl Parameter {
@@ -119,6 +123,8 @@ impl Parameter {
             Self::FreeSigma => &mut p.free.sigma,
             Self::Beyond => &mut p.beyond,
             Self::NoEchoShare => &mut p.no_echo.share,
+            Self::RepeatsShare => &mut p.repeats.share,
+            Self::RepeatsDistance => &mut p.repeats.distance,
             _ => return None,
         })
     }

@@ -1,7 +1,7 @@
 //! What the model is fitted to: scans, and the truth of a fixed set of cells.
 
 use covmap::{Cell, Change, CoverageMap, Grid, Histogram};
-use covmap_model::{Body, BodyEvent, ModelError, ModelParameters, SensorModel, integrate};
+use covmap_model::{Body, BodyEvent, Looks, ModelError, ModelParameters, SensorModel};
 use covmap_sonar::{Scan, SonarRing};
 
 /// The scans of one trajectory, and the true coverage of some cells.
@@ -54,7 +54,8 @@ impl Example {
     }
 
     pub(crate) fn map_of(&self, model: &SensorModel) -> Result<CoverageMap, ModelError> {
-        self.map_by(model.parameters().bins, |map, scan| integrate(model, map, scan))
+        let mut looks = Looks::new(model);
+        self.map_by(model.parameters().bins, |map, scan| looks.integrate(model, map, scan))
     }
 
     /// What a map says of each cell of the truth, and the truth: the posterior, uniform where

@@ -18,6 +18,7 @@ fn bench(c: &mut Criterion) {
         gain: InformationGain::Eq14,
         unknown_reflection: 0.0,
         uniform_share: 0.0,
+        novelty: 1.0,
     };
     let mut cache = GainCache::new(&model, 0.0, grid, prediction, Upkeep::Kept).unwrap();
     let home = grid.cell_at(Point2::origin()).unwrap();

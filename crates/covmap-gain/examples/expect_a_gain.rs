@@ -23,6 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         gain: InformationGain::Eq14,
         unknown_reflection: 0.0,
         uniform_share: 0.0,
+        novelty: 1.0,
     };
     let mut cache = GainCache::new(&model, 0.0, grid, prediction, Upkeep::Kept)?;
 

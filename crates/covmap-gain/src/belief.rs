@@ -353,7 +353,8 @@ mod tests {
         let grid = Grid::new(Point2::new(-2.0, -1.0), 0.1, 41, 23).unwrap();
         for unknown_reflection in [0.0, 0.3] {
             let gain = InformationGain::Eq14;
-            let prediction = RangePrediction { gain, unknown_reflection, uniform_share: 0.0 };
+            let prediction =
+                RangePrediction { gain, unknown_reflection, uniform_share: 0.0, novelty: 1.0 };
             let mut map = CoverageMap::new(grid, 11).unwrap();
             let mut belief = Belief::new(grid, 11, &stencil, prediction, 0.0);
             for turn in 0..6u32 {

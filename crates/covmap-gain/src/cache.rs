@@ -6,11 +6,12 @@ mod staleness;
 
 use crate::belief::Belief;
 use crate::evaluator::Evaluator;
+use crate::largest::Largest;
 use crate::memory::{Size, whole};
 use crate::outcomes::{AskedRow, RowGains};
 use crate::sight::{GroupLikelihood, RasterBeam};
 use crate::stencil::FARTHEST;
-use crate::view_points::groups_per_row;
+use crate::view_points::{group_and_lane, groups_per_row};
 use crate::{BeamError, InformationGain, RangePrediction, Stencil, ViewPoints};
 use covmap::lanes::{LANES, Lanes};
 use covmap::{Cell, CoverageMap, Grid};
@@ -78,6 +79,8 @@ pub struct GainCache {
     arch: Arch,
     /// A gain was met that is above its bound.
     exceeded: bool,
+    /// What some reason to measure must be expected to gain if a view-point is to promise enough.
+    least_change: f32,
 }
 
 impl GainCache {
@@ -125,7 +128,15 @@ impl GainCache {
             beam_gain: vec![[0.0; LANES]; group_beams],
             arch: Registers::Avx512.or_narrower(),
             exceeded: false,
+            least_change: 0.0,
         })
+    }
+
+    /// The same, with what the entropy of a cell must be expected to fall by \[nats\] if a view-point
+    /// is to promise enough: see [`is_promising`](Self::is_promising).
+    #[must_use]
+    pub fn with_least_change(self, least: f64) -> Self {
+        Self { least_change: crate::numbers::to_f32(least), ..self }
     }
 
     /// About how many bytes a cache takes at most while it is made and asked, with its copy of the
@@ -163,6 +174,17 @@ impl GainCache {
         if self.belief.set_limit(index, limit) {
             self.onlookers.mark(index, CellChange::Limit);
         }
+    }
+
+    /// Sets how much of a reading from a view-point would be new, in \[0, 1\]: at first all of it.
+    pub fn set_novelty(&mut self, view_point: usize, novelty: f64) {
+        let (width, novelty) = (self.grid.width(), crate::numbers::to_f32(novelty));
+        self.evaluator.set_novelty((view_point / width, view_point % width), novelty);
+        let (group, lane) = group_and_lane(width, view_point);
+        let (count, others) = (self.beams.len(), !(1 << lane));
+        self.groups[group].keep_gains(others);
+        let states = &mut self.states[group * count..(group + 1) * count];
+        states.iter_mut().for_each(|state| state.keep_gains(others));
     }
 
     /// Brings V(l), and whether it holds a reason to measure, up to date for some view-points.
@@ -249,8 +271,7 @@ impl GainCache {
         };
         let rows: Vec<(usize, &[u16])> =
             wanted.groups().chunks(per_row).enumerate().filter(|row| is_stale(*row)).collect();
-        let outcomes = self.beams.first().map_or(1, RasterBeam::outcomes);
-        let most = (OUTCOMES_TOGETHER / (per_row * beams * outcomes)).max(1);
+        let most = self.rows_together();
         for rows in portions(&rows, most, most.max(self.evaluator.border())) {
             let ask = |likelihood: &mut GroupLikelihood, (y, wanted): &(usize, &[u16])| {
                 self.arch.dispatch(AskOutcomes {
@@ -265,7 +286,7 @@ impl GainCache {
             };
             let asked: Vec<AskedRow> =
                 rows.par_iter().map_init(GroupLikelihood::new, ask).collect();
-            let gains = self.evaluator.gains(self.arch, &self.belief, &asked);
+            let gains = self.evaluator.gains(self.arch, &self.belief, &asked, self.least_change);
             for ((row, gains), (_, wanted)) in asked.iter().zip(gains).zip(rows) {
                 self.keep_gains(row, gains, wanted);
             }
@@ -281,9 +302,49 @@ impl GainCache {
         averages.for_each(|((((mean, group), gains), states), wanted)| {
             if wanted & !group.gain != 0 {
                 *mean = average(gains);
-                (group.gain, group.bound) = up_to_date(states);
+                up_to_date(group, states);
             }
         });
+    }
+
+    /// For every cell, by its row-major index, the most that its entropy is expected to fall by from
+    /// some view-points, by one of the beams \[nats\], and the view-point: the first of several. `None`
+    /// for cells that none of them covers; for all with the product of Eq. (9), whose evaluation does
+    /// not tell the cells apart.
+    pub fn largest_changes(&mut self, view_points: &ViewPoints) -> Vec<Option<(f64, usize)>> {
+        self.refresh_sight(view_points);
+        let (per_row, beams) = (groups_per_row(&self.grid), self.beams.len());
+        let stale = vec![BeamState::default(); per_row * beams];
+        let ask = |likelihood: &mut GroupLikelihood, (y, wanted)| {
+            let row = self.arch.dispatch(AskOutcomes {
+                beams: &self.beams,
+                belief: &self.belief,
+                here: self.belief.bordered(y * self.grid.width()),
+                wanted,
+                states: &stale,
+                y,
+                likelihood,
+            });
+            (row, wanted)
+        };
+        let is_wanted = |(_, wanted): &(usize, &[u16])| wanted.iter().any(|wanted| *wanted != 0);
+        let rows: Vec<(usize, &[u16])> =
+            view_points.groups().chunks(per_row).enumerate().filter(is_wanted).collect();
+        let mut largest = Largest::new(self.grid.len());
+        for rows in rows.chunks(self.rows_together()) {
+            let rows = rows.par_iter().copied();
+            let asked: Vec<_> = rows.map_init(GroupLikelihood::new, ask).collect();
+            let found = self.evaluator.largest_changes(self.arch, &self.belief, &asked);
+            largest = found.into_iter().fold(largest, Largest::merged);
+        }
+        largest.into_cells()
+    }
+
+    /// So many rows of view-points are evaluated together.
+    fn rows_together(&self) -> usize {
+        let outcomes = self.beams.first().map_or(1, RasterBeam::outcomes);
+        let of_row = groups_per_row(&self.grid) * self.beams.len() * outcomes;
+        (OUTCOMES_TOGETHER / of_row).max(1)
     }
 
     /// Takes over what changed since the last time: makes stale what depends on it, and brings up to
@@ -312,19 +373,20 @@ impl GainCache {
     /// if one of them is above its bound.
     fn keep_gains(&mut self, row: &AskedRow, gains: RowGains, wanted: &[u16]) {
         let (per_row, beams) = (groups_per_row(&self.grid), self.beams.len());
-        for (asked, gains) in row.beams.iter().zip(gains) {
+        for (asked, answer) in row.beams.iter().zip(gains) {
             let wanted = wanted[asked.group];
             let at = (row.y * per_row + asked.group) * beams + asked.beam;
             let state = &mut self.states[at];
             let bounded = state.bound & !state.gain;
             for lane in (0..LANES).filter(|lane| wanted >> lane & 1 == 1) {
                 #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for size")]
-                let (gain, kept) = (gains[lane] as f32, &mut self.beam_gain[at][lane]);
+                let (gain, kept) = (answer.gain[lane] as f32, &mut self.beam_gain[at][lane]);
                 let is_bounded = bounded >> lane & 1 == 1;
                 self.exceeded |= is_bounded && gain > *kept + ROUNDING * (1.0 + kept.abs());
                 *kept = gain;
             }
             (state.gain, state.bound) = (state.gain | wanted, state.bound | wanted);
+            state.promising = state.promising & !wanted | answer.promising & wanted;
         }
     }
 }

@@ -27,8 +27,10 @@ mod ceilings;
 mod ends;
 mod fronts;
 mod polynomials;
+mod sums;
 
-use crate::belief::{Belief, NOT_KNOWN, lanes_at};
+use crate::belief::{Belief, NOT_KNOWN, lanes_at, padded};
+use crate::largest::Largest;
 use crate::memory::Size;
 use crate::numbers::to_f32;
 use crate::outcomes::{AskedRow, RowGains};
@@ -36,16 +38,15 @@ use crate::sight::GroupLikelihood;
 use crate::view_points::groups_per_row;
 use crate::{InformationGain, Stencil, evidence::Evidence};
 use beam::CauseBeam;
-use causes::GroupCauses;
 use ceilings::{Bands, Ceilings};
 use covmap::Grid;
-use covmap::lanes::{LANES, Lanes, add_product};
+use covmap::lanes::{LANES, Lanes};
 use covmap_model::{CauseParameters, ModelParameters, SensorModel, gaussian, opaque};
 use ends::AtEnd;
-use fronts::{Front, FrontSums};
 use polynomials::Polynomials;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Arch;
 use rayon::prelude::*;
+use sums::{AllCells, GainsOfRow, GroupSum, LargestOfRow};
 
 /// So many rows of view-points are worked at by one thread at least.
 const ROWS_PER_THREAD: usize = 1;
@@ -67,6 +68,9 @@ pub(crate) struct Cause {
     surface: Vec<f32>,
     /// Bordered: 1 − o.
     clear: Vec<f32>,
+    /// By row and column of the view-point, padded as histograms are: how much of a reading would be
+    /// new.
+    novelty: Vec<f32>,
 }
 
 impl Cause {
@@ -114,6 +118,7 @@ impl Cause {
             behind,
             surface: vec![0.0; cells],
             clear: vec![1.0; cells],
+            novelty: vec![1.0; grid.height() * padded(grid.width())],
         }
     }
 
@@ -156,6 +161,11 @@ impl Cause {
         }
     }
 
+    /// Sets how much of a reading from a view-point would be new.
+    pub(crate) fn set_novelty(&mut self, (y, x): (usize, usize), novelty: f32) {
+        self.novelty[y * padded(self.grid.width()) + x] = novelty;
+    }
+
     /// The shares of "passed" at which gains are interpolated.
     pub(crate) fn shares(&self) -> Vec<f64> {
         self.front.as_ref().map(Polynomials::shares).unwrap_or_default()
@@ -186,14 +196,39 @@ impl Cause {
         }
         outcomes.push(usize::MAX);
         probabilities.push(likelihood.no_echo().map(to_f32));
-        let group = GroupSum { cause: self, belief, y, x };
-        group.sum::<false>(beam, (&outcomes, &probabilities), &mut Vec::with_capacity(count))
+        let (group, mut sum) = (GroupSum { cause: self, belief, y, x }, AllCells([0.0; LANES]));
+        let fronts = &mut Vec::with_capacity(count);
+        group.sum::<false>(beam, (&outcomes, &probabilities), fronts, &mut sum);
+        sum.0
     }
 
-    /// The gains of all beams of some rows.
-    pub(crate) fn gains(&self, arch: Arch, belief: &Belief, rows: &[AskedRow]) -> Vec<RowGains> {
+    /// What every cell is expected to change by at most, from some rows of view-points, of which those
+    /// are wanted that have a bit.
+    pub(crate) fn largest_changes(
+        &self,
+        arch: Arch,
+        belief: &Belief,
+        rows: &[(AskedRow, &[u16])],
+    ) -> Largest {
+        let none = || Largest::new(self.grid.len());
+        let found = rows.par_iter().fold(none, |mut largest, (row, wanted)| {
+            let of_row = LargestOfRow { cause: self, belief, row, wanted, largest: &mut largest };
+            arch.dispatch(of_row);
+            largest
+        });
+        found.reduce(none, Largest::merged)
+    }
+
+    /// The gains of all beams of some rows, and which of their cells promise at `least` so much.
+    pub(crate) fn gains(
+        &self,
+        arch: Arch,
+        belief: &Belief,
+        rows: &[AskedRow],
+        least: f32,
+    ) -> Vec<RowGains> {
         let rows = rows.par_iter().with_min_len(ROWS_PER_THREAD);
-        rows.map(|row| arch.dispatch(GainsOfRow { cause: self, belief, row })).collect()
+        rows.map(|row| arch.dispatch(GainsOfRow { cause: self, belief, row, least })).collect()
     }
 }
 
@@ -205,168 +240,6 @@ fn evidence(bins: usize, (mu, sigma): (f64, f64), share: f64) -> Evidence {
     let even = (1.0 - share) / bins as f64;
     t.iter_mut().for_each(|t| *t = even + share * *t);
     Evidence::of(t)
-}
-
-/// The gains of one row.
-struct GainsOfRow<'a> {
-    cause: &'a Cause,
-    belief: &'a Belief,
-    row: &'a AskedRow,
-}
-
-impl WithSimd for GainsOfRow<'_> {
-    type Output = RowGains;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> RowGains {
-        let Self { cause, belief, row } = self;
-        let (mut fronts, mut gains) = (Vec::new(), Vec::with_capacity(row.beams.len()));
-        // A closure would be compiled for narrower registers.
-        for asked in &row.beams {
-            let group = GroupSum { cause, belief, y: row.y, x: asked.group * LANES };
-            let outcomes = &row.outcomes[asked.outcomes.clone()];
-            let probabilities = &row.probabilities[asked.outcomes.clone()];
-            let gain = group.sum::<true>(asked.beam, (outcomes, probabilities), &mut fronts);
-            gains.push(gain.map(f64::from));
-        }
-        gains
-    }
-}
-
-/// A beam's sums over its outcomes from a group of view-points, the first of which is in column `x`
-/// of row `y`.
-struct GroupSum<'a> {
-    cause: &'a Cause,
-    belief: &'a Belief,
-    y: usize,
-    x: usize,
-}
-
-impl GroupSum<'_> {
-    /// E\[I\] of a beam, or an upper bound of it.
-    #[inline(always)]
-    fn sum<const EXACT: bool>(
-        &self,
-        beam: usize,
-        (outcomes, probabilities): (&[usize], &[Lanes]),
-        fronts: &mut Vec<Front>,
-    ) -> Lanes {
-        let (cause, belief) = (self.cause, self.belief);
-        let beam = &cause.beams[beam];
-        let here = belief.bordered(self.y * cause.grid.width()) + self.x;
-        let mut causes = GroupCauses::new(&cause.parameters);
-        let mut gain = [0.0; LANES];
-        fronts.clear();
-        for (k, probability) in outcomes.iter().zip(probabilities) {
-            let (cells, any) = if let Some(end) = beam.ends.get(*k) {
-                causes.pass(&cause.clear, &beam.cells[..end.front], here);
-                causes.explain(&cause.surface, beam, end, here);
-                self.add_ends::<EXACT>(&mut gain, (beam, end), &causes, probability);
-                (end.front, causes.any)
-            } else {
-                let mut silent = GroupCauses::new(&cause.parameters);
-                silent.pass(&cause.clear, &beam.cells[..beam.no_echo], here);
-                (beam.no_echo, silent.of_no_echo())
-            };
-            fronts.push(Front { cells, probability: *probability, any });
-        }
-        match (self.bounds::<EXACT>(), &cause.front) {
-            (Some(ceilings), _) => self.add_fronts(&mut gain, beam, (fronts, ceilings.no_sums())),
-            (_, Some(front)) => self.add_fronts(&mut gain, beam, (fronts, front.no_sums())),
-            _ => fronts.iter().for_each(|front| self.add_each_front(&mut gain, beam, front)),
-        }
-        gain
-    }
-
-    /// Adds the gains, or their bounds, of the cells at the end and behind it.
-    #[inline(always)]
-    fn add_ends<const EXACT: bool>(
-        &self,
-        gain: &mut Lanes,
-        (beam, end): (&CauseBeam, &beam::End),
-        causes: &GroupCauses<'_>,
-        probability: &Lanes,
-    ) {
-        let (at_end, bounds) = (&self.cause.at_end, self.bounds::<EXACT>());
-        let mut sum = [0.0; LANES];
-        for (cell, near) in beam.cells[end.front..end.ended].iter().zip(&beam.near[end.first..]) {
-            let Some((y, x)) = self.place(cell) else { continue };
-            let ended = causes.ended(cell);
-            if let Some(ceilings) = bounds {
-                let kernel = (near.band, near.free);
-                ceilings.add_end(&mut sum, (y, x), (ended, &causes.any), kernel);
-            } else {
-                let prior = self.belief.prior_at(y, x);
-                at_end.add(&mut sum, &prior, near.kernel(), ended, &causes.any);
-            }
-        }
-        for cell in &beam.cells[end.ended..end.reach] {
-            let Some((y, x)) = self.place(cell) else { continue };
-            let ended = causes.ended(cell);
-            if let Some(ceilings) = bounds {
-                ceilings.add_behind(&mut sum, (y, x), ended, beam.behind_weight);
-            } else if let Some(behind) = &self.cause.behind {
-                behind.add(&mut sum, (y, x), ended, beam.behind_weight);
-            } else {
-                let (prior, kernel) =
-                    (self.belief.prior_at(y, x), at_end.behind(beam.behind_weight));
-                at_end.add(&mut sum, &prior, kernel, ended, &causes.any);
-            }
-        }
-        add_product(gain, probability, &sum);
-    }
-
-    /// What bounds are made of, unless gains are asked for.
-    #[inline(always)]
-    fn bounds<const EXACT: bool>(&self) -> Option<&Ceilings> {
-        self.cause.ceilings.as_ref().filter(|_| !EXACT)
-    }
-
-    /// Adds the gains, or their bounds, of the cells in front of the ends of all outcomes: from the
-    /// farthest cell inwards, each for all outcomes at once.
-    #[inline(always)]
-    fn add_fronts(
-        &self,
-        gain: &mut Lanes,
-        beam: &CauseBeam,
-        (fronts, mut sums): (&mut [Front], impl FrontSums),
-    ) {
-        fronts.sort_by_key(|front| std::cmp::Reverse(front.cells));
-        for i in 0..fronts.len() {
-            let Front { cells, probability, any } = &fronts[i];
-            sums.add(probability, any);
-            let next = fronts.get(i + 1).map_or(0, |next| next.cells);
-            for cell in beam.cells[next..*cells].iter().filter(|cell| cell.free > 0.0) {
-                let Some(place) = self.place(cell) else { continue };
-                sums.add_cell(gain, place, cell.free);
-            }
-        }
-    }
-
-    /// Cell by cell for one outcome.
-    #[inline(always)]
-    fn add_each_front(&self, gain: &mut Lanes, beam: &CauseBeam, front: &Front) {
-        let (at_end, mut sum) = (&self.cause.at_end, [0.0; LANES]);
-        for cell in beam.cells[..front.cells].iter().filter(|cell| cell.free > 0.0) {
-            let Some((y, x)) = self.place(cell) else { continue };
-            let prior = self.belief.prior_at(y, x);
-            let kernel = at_end.passed(cell.free);
-            at_end.add(&mut sum, &prior, kernel, &[0.0; LANES], &front.any);
-        }
-        add_product(gain, &front.probability, &sum);
-    }
-
-    /// Row and column of a cell as the first view-point sees it; `None` if it is outside of
-    /// the grid for the whole group.
-    #[inline(always)]
-    fn place(&self, cell: &beam::CauseCell) -> Option<(usize, isize)> {
-        let grid = &self.cause.grid;
-        let y = self.y.wrapping_add_signed(cell.dy);
-        let x = self.x.cast_signed() + cell.dx;
-        let is_inside =
-            y < grid.height() && x > -LANES.cast_signed() && x < grid.width().cast_signed();
-        is_inside.then_some((y, x))
-    }
 }
 
 /// Numbers of a bordered raster at a cell, from each view-point of a group.

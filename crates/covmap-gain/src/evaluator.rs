@@ -7,6 +7,7 @@
 
 use crate::belief::Belief;
 use crate::cause::Cause;
+use crate::largest::Largest;
 use crate::layout::PlaneLayout;
 use crate::memory::Size;
 use crate::outcomes::{AskedRow, RowGains};
@@ -74,6 +75,14 @@ impl Evaluator {
         }
     }
 
+    /// Sets how much of a reading from a view-point, by row and column, would be new; with the product
+    /// all of it is.
+    pub(crate) fn set_novelty(&mut self, place: (usize, usize), novelty: f32) {
+        if let Self::Cause(cause) = self {
+            cause.set_novelty(place, novelty);
+        }
+    }
+
     /// At which shares gains are interpolated, if they are.
     pub(crate) fn shares(&self) -> Vec<f64> {
         match self {
@@ -90,17 +99,38 @@ impl Evaluator {
         }
     }
 
-    /// The gains of all beams of some rows, which are given in ascending order of y.
+    /// The gains of all beams of some rows, which are given in ascending order of y, and which of
+    /// their cells are expected to gain at `least` so much: with the product any.
     pub(crate) fn gains(
         &mut self,
         arch: Arch,
         belief: &Belief,
         rows: &[AskedRow],
+        least: f32,
     ) -> Vec<RowGains> {
         match self {
             Self::Product(product) => product.gains(arch, belief, rows),
-            Self::Cause(cause) => cause.gains(arch, belief, rows),
+            Self::Cause(cause) => cause.gains(arch, belief, rows, least),
         }
+    }
+
+    /// What every cell is expected to change by at most, from some rows of view-points; `None` with
+    /// the product, which does not tell the cells apart.
+    pub(crate) fn largest_changes(
+        &self,
+        arch: Arch,
+        belief: &Belief,
+        rows: &[(AskedRow, &[u16])],
+    ) -> Option<Largest> {
+        match self {
+            Self::Product(_) => None,
+            Self::Cause(cause) => Some(cause.largest_changes(arch, belief, rows)),
+        }
+    }
+
+    /// Whether it is known which cells gain what.
+    pub(crate) fn tells_cells_apart(&self) -> bool {
+        matches!(self, Self::Cause(_))
     }
 
     /// Whether [`bound`](Self::bound) is worth asking.

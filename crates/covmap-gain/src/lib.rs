@@ -49,12 +49,13 @@ mod cache;
 mod cause;
 
 mod evidence;
+mod largest;
 mod layout;
 mod memory;
 
 pub use cache::{GAIN_TOLERANCE, GainCache, Upkeep};
 pub use layout::{MemoryLayout, PlaneLayout};
-pub use literal::{expected_information_gain, imagined_causes};
+pub use literal::{expected_changes, expected_information_gain, imagined_causes};
 pub use product::{RangeInterpolation, TableErrors};
 pub use range_likelihood::{
     InformationGain, RangeLikelihood, RangePrediction, range_likelihood, reflection,

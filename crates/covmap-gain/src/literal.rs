@@ -23,21 +23,28 @@ pub fn expected_information_gain(
     prediction: RangePrediction,
     view_point: Cell,
 ) -> f64 {
-    let gain = |beam| beam_gain(map, model, stencil, beam, prediction, view_point);
-    let sum: f64 = stencil.beams.iter().map(gain).sum();
+    let changes = |beam| expected_changes(map, model, stencil, beam, prediction, view_point);
+    let sum: f64 = stencil.beams.iter().flat_map(changes).sum();
     #[allow(clippy::cast_precision_loss, reason = "few beams")]
     let beams = stencil.beams.len() as f64;
     sum / beams
 }
 
-fn beam_gain(
+/// What the entropy of each cell of a beam is expected to fall by, in the beam's order \[nats\]:
+///
+/// ```text
+/// Σ_d p(d | c) · I(h_i | d)
+/// ```
+///
+/// Eq. (14) without its sum over the cells.
+pub fn expected_changes(
     map: &CoverageMap,
     model: &SensorModel,
     stencil: &Stencil,
     beam: &BeamStencil,
     prediction: RangePrediction,
     view_point: Cell,
-) -> f64 {
+) -> Vec<f64> {
     let cell = |i: usize| view_point.offset(beam.cells[i].dx, beam.cells[i].dy);
     let mut likelihood = RangeLikelihood::default();
     let rho = |i| match (prediction.gain, model.parameters().update.cause()) {
@@ -45,17 +52,19 @@ fn beam_gain(
         _ => reflection(map, cell(i), prediction.unknown_reflection),
     };
     range_likelihood(beam, prediction.uniform_share, rho, &mut likelihood);
-    let mut expected = 0.0;
+    let mut changes = vec![0.0; beam.cells.len()];
     for k in 0..stencil.outcomes() {
         let p = likelihood.probability(k);
         if p > 0.0 {
-            let imagined = Imagined::new(map, model, beam, view_point, stencil.outcome(k));
-            let gain =
-                |i: usize| imagined.information_gain(map, cell(i), &beam.cells[i], prediction.gain);
-            expected += p * (0..beam.reach(k)).map(gain).sum::<f64>();
+            let of = (map, model, beam, view_point);
+            let imagined = Imagined::new(of, stencil.outcome(k), prediction.novelty);
+            for (i, change) in changes.iter_mut().enumerate().take(beam.reach(k)) {
+                let gain = imagined.information_gain(map, cell(i), &beam.cells[i], prediction.gain);
+                *change += p * gain;
+            }
         }
     }
-    expected
+    changes
 }
 
 /// The expected coverage of a cell; 0 outside of the grid.
@@ -101,13 +110,12 @@ pub fn imagined_causes(
 
 impl<'a> Imagined<'a> {
     fn new(
-        map: &CoverageMap,
-        model: &'a SensorModel,
-        beam: &BeamStencil,
-        view_point: Cell,
+        (map, model, beam, view_point): (&CoverageMap, &'a SensorModel, &BeamStencil, Cell),
         outcome: Outcome,
+        novelty: f64,
     ) -> Self {
         let causes = imagined_causes(map, model, beam, view_point, outcome);
+        let causes = causes.map(|causes| causes.by_as_much(novelty));
         let causes = model.parameters().update.cause().zip(causes);
         Self { model, outcome, causes }
     }

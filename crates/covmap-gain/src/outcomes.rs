@@ -26,6 +26,15 @@ pub(crate) struct AskedRow {
     pub(crate) probabilities: Vec<Lanes>,
 }
 
-/// The answer: E\[I\] of each beam of an [`AskedRow`], from each view-point of its group \[nats\].
-/// From view-points that did not ask it means nothing.
-pub(crate) type RowGains = Vec<[f64; LANES]>;
+/// What one of these beams is expected to tell, from each view-point of its group. From view-points
+/// that did not ask it means nothing.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct BeamAnswer {
+    /// E\[I\] \[nats\].
+    pub(crate) gain: [f64; LANES],
+    /// Whether some cell that is a reason to measure is expected to gain enough.
+    pub(crate) promising: u16,
+}
+
+/// The answer for each beam of an [`AskedRow`].
+pub(crate) type RowGains = Vec<BeamAnswer>;

@@ -27,6 +27,9 @@ pub struct RangePrediction {
     /// η: the share of every predicted range's probability that is spread over all ranges, in
     /// \[0, 1\].
     pub uniform_share: f64,
+    /// How much of a reading would be new, in \[0, 1\]: [`covmap_model::Looks`]. It belongs to a
+    /// view-point, and [`crate::GainCache`] has one for each.
+    pub novelty: f64,
 }
 
 /// The probability of each range d_k, and of no echo.

@@ -243,6 +243,13 @@ impl Role {
 }
 
 impl Causes {
+    /// The same of a reading of which so much is new: with the rest it repeats earlier ones, and
+    /// tells nothing.
+    #[must_use]
+    pub fn by_as_much(self, novelty: f64) -> Self {
+        Self { ended: self.ended.map(|share| novelty * share), any: novelty * self.any }
+    }
+
     /// The causes where the map knows nothing yet: M bearings of unknown cells, all in clear view.
     pub fn in_an_unknown_map(parameters: &CauseParameters) -> Self {
         let mut clues = Clues::new(parameters, 1.0, 1.0);

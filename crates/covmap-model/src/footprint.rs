@@ -132,6 +132,11 @@ impl Footprint {
         Ok(Self { sectors: widths.into_iter().enumerate().map(sector).collect() })
     }
 
+    /// Where each sensor sits, and where it looks, in the frame of the robot.
+    pub fn sensors(&self) -> impl Iterator<Item = (Point2<f64>, Vector2<f64>)> {
+        self.sectors.iter().map(|sector| (sector.sensor, sector.axis))
+    }
+
     /// The number of beams.
     pub fn beams(&self) -> usize {
         self.sectors.len()

@@ -5,7 +5,7 @@ mod cause_terms;
 mod evidence;
 mod fast;
 
-pub use fast::integrate;
+pub use fast::{integrate, integrate_new};
 
 use by_cause::explain;
 
@@ -43,6 +43,20 @@ impl SensorModel {
 /// # Panics
 /// As [`integrate`].
 pub fn integrate_literally(model: &SensorModel, map: &mut CoverageMap, scan: &Scan) -> Vec<Change> {
+    integrate_new_literally(model, map, scan, &vec![1.0; scan.ranges.len()])
+}
+
+/// The same of a scan of which so much of each beam's reading is new: what [`integrate_new`] is
+/// tested against.
+///
+/// # Panics
+/// As [`integrate_new`].
+pub fn integrate_new_literally(
+    model: &SensorModel,
+    map: &mut CoverageMap,
+    scan: &Scan,
+    novelty: &[f64],
+) -> Vec<Change> {
     assert!(model.fits(map), "the model is for other bins or another resolution");
     let grid = *map.grid();
     let mut evidence = [0.0; MAX_BINS];
@@ -57,7 +71,8 @@ pub fn integrate_literally(model: &SensorModel, map: &mut CoverageMap, scan: &Sc
         }
         Update::Cause(parameters) => {
             let r = model.resolution();
-            let explained = explain(model, parameters, map, scan).into_iter().enumerate();
+            let explained =
+                explain(model, parameters, map, (scan, novelty)).into_iter().enumerate();
             for (beam, (outcome, causes)) in explained.filter_map(|(b, e)| Some((b, e?))) {
                 let reach = model.reach(outcome);
                 model.footprint().for_each_cell(&grid, &scan.pose, beam, reach, |covered| {

@@ -29,6 +29,7 @@ mod body;
 mod cause;
 mod footprint;
 mod integrate;
+mod looks;
 mod occupancy;
 mod parameters;
 mod product;
@@ -40,10 +41,12 @@ pub use body::{Body, BodyEvent};
 pub use cause::{Causes, Clues, Met, Role, gaussian, opaque};
 pub use footprint::{Footprint, FootprintCell, FootprintError, FootprintRule};
 pub use integrate::{
-    cells_under_body, integrate, integrate_body, integrate_literally, intercepted,
+    cells_under_body, integrate, integrate_body, integrate_literally, integrate_new,
+    integrate_new_literally, intercepted,
 };
+pub use looks::Looks;
 pub use occupancy::{OccupancyGrid, OccupancyParameters};
-pub use parameters::{CauseParameters, FreeSpace, NoEchoShare, Update};
+pub use parameters::{CauseParameters, FreeSpace, NoEchoShare, Repeats, Update};
 pub use parameters::{Linear, ModelError, ModelParameters, NoEchoParameters, ProductParameters};
 pub use registers::Registers;
 pub use scan_counts::{Counting, ScanCounts};

@@ -3,7 +3,7 @@
 mod cause;
 mod product;
 
-pub use cause::{CauseParameters, FreeSpace, NoEchoShare};
+pub use cause::{CauseParameters, FreeSpace, NoEchoShare, Repeats};
 pub use product::{NoEchoParameters, ProductParameters};
 
 pub(crate) use cause::MOST_BEARINGS;

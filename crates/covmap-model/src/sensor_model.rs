@@ -1,6 +1,7 @@
 //! The sensor model: what readings mean, and what one says about one cell.
 
 use crate::cause::Clues;
+use crate::parameters::Repeats;
 use crate::product::mu;
 use crate::{Causes, Footprint, Met, ModelError, ModelParameters, Registers, Update};
 use covmap::{CoverageMap, Histogram};
@@ -56,6 +57,11 @@ impl SensorModel {
     /// The side of a cell, r \[m\].
     pub fn resolution(&self) -> f64 {
         self.resolution
+    }
+
+    /// How much readings from one place repeat each other.
+    pub fn repeats(&self) -> Repeats {
+        self.parameters.update.cause().map_or(Repeats::NONE, |cause| cause.repeats)
     }
 
     pub(crate) fn registers(&self) -> pulp::Arch {

@@ -4,8 +4,8 @@
 
 use covmap::{Cell, CoverageMap, Grid};
 use covmap_model::{
-    CauseParameters, FootprintRule, FreeSpace, Linear, ModelParameters, NoEchoShare, SensorModel,
-    Update, integrate, integrate_literally,
+    CauseParameters, FootprintRule, FreeSpace, Linear, Looks, ModelParameters, NoEchoShare,
+    Repeats, SensorModel, Update, integrate, integrate_new_literally,
 };
 use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -38,6 +38,7 @@ fn a_cause() -> impl Strategy<Value = CauseParameters> {
             free,
             beyond: passing.0,
             no_echo: NoEchoShare { range: passing.1, share: passing.2 },
+            repeats: Repeats { share: passing.2, distance: surface.2, bearing: answers.0 },
         },
     )
 }
@@ -99,9 +100,11 @@ proptest! {
         let model = SensorModel::new(&model, &SonarRing::b21r(), 0.1).unwrap();
         let bins = model.parameters().bins;
         let (mut fast, mut literal) = (empty_map(bins), empty_map(bins));
+        let mut looks = Looks::new(&model);
         for scan in &scans {
-            integrate(&model, &mut fast, scan);
-            integrate_literally(&model, &mut literal, scan);
+            let novelty = looks.novelty(&model, &scan.pose);
+            looks.integrate(&model, &mut fast, scan);
+            integrate_new_literally(&model, &mut literal, scan, &novelty);
         }
         same(&fast, &literal, 2e-5)?;
     }
@@ -150,4 +153,31 @@ fn a_known_wall_explains_its_echo_and_hides_what_is_behind_it() {
     let mut mirrored = known.clone();
     (0..40).for_each(|_| drop(integrate(&model, &mut mirrored, &scan(2.0))));
     assert!(at(&mirrored, 1.05) > wall - 0.05, "{} {wall}", at(&mirrored, 1.05));
+}
+
+/// ρ_0 = .6 and λ = .2 m: from the same place .4 is new, from λ away 1 − .6·e^−½, and of a third look
+/// from the first place the product of both.
+#[test]
+fn a_second_look_from_one_place_tells_less() {
+    let model = ModelParameters::b21r()
+        .with_cause(|cause| cause.repeats = Repeats { share: 0.6, distance: 0.2, bearing: 0.1 });
+    let model = SensorModel::new(&model, &SonarRing::b21r(), 0.1).unwrap();
+    let mut looks = Looks::new(&model);
+    let pose = |x: f64, heading: f64| Isometry2::new(Vector2::new(x, 0.0), heading);
+    let novelty = |looks: &Looks, x, heading| looks.novelty(&model, &pose(x, heading))[5];
+    let look = |looks: &mut Looks, x: f64| {
+        let scan = Scan { pose: pose(x, 0.0), time: 0.0, ranges: vec![Range::Missing; 24] };
+        looks.integrate(&model, &mut empty_map(11), &scan);
+    };
+    let is = |found: f64, expected: f64| assert!((found - expected).abs() < 1e-12, "{found}");
+    is(novelty(&looks, 0.0, 0.0), 1.0);
+    look(&mut looks, 0.0);
+    is(novelty(&looks, 0.0, 0.0), 0.4);
+    is(novelty(&looks, 0.2, 0.0), 1.0 - 0.6 * libm::exp(-0.5));
+    is(novelty(&looks, 0.61, 0.0), 1.0);
+    // A turn by one sensor's spacing looks along the same axes; half of it along none of them.
+    is(novelty(&looks, 0.0, 15f64.to_radians()), 0.4);
+    assert!(novelty(&looks, 0.0, 7.5f64.to_radians()) > 0.7);
+    look(&mut looks, 0.2);
+    is(novelty(&looks, 0.0, 0.0), 0.4 * (1.0 - 0.6 * libm::exp(-0.5)));
 }

@@ -27,11 +27,11 @@ fn bench(c: &mut Criterion) {
         planner.observe(&map, &scan, &changes);
     }
 
-    let candidates = planner.clone().candidate_table(home).len();
+    let candidates = planner.clone().candidate_table(&map, home).len();
     c.bench_function(&format!("{candidates} candidates with their gains, nothing cached"), |b| {
         b.iter_batched_ref(
             || planner.clone(),
-            |planner| planner.candidate_table(home),
+            |planner| planner.candidate_table(&map, home),
             BatchSize::LargeInput,
         );
     });

@@ -1,8 +1,9 @@
 //! What the planner says of the cells: the certificate, what it can reach, and counts for progress.
 
 use crate::exploration::InSight;
-use crate::{CellStatus, Planner, Scope};
+use crate::{CellStatus, Planner, Scope, travel_costs};
 use covmap::{Cell, CoverageMap, Raster, neighbour};
+use covmap_gain::ViewPoints;
 use serde::{Deserialize, Serialize};
 
 /// A known cell of at least this coverage ends what may still come into sight.
@@ -23,7 +24,34 @@ pub enum Reach {
     Unknown,
 }
 
+/// What one more scan could change about a cell.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Promise {
+    /// The most that its entropy is expected to fall by, by one beam from one of the places that can be
+    /// reached: Σ_d p(d | c) · I(h | d) \[nats\].
+    pub change: f64,
+    /// The view-point that promises it.
+    pub from: Cell,
+}
+
 impl Planner {
+    /// For every cell what one more scan, from any place that a robot in the cell `from` can reach, is
+    /// expected to change most; `None` for cells that cannot be measured, and for all with the product
+    /// of Eq. (9). An exhausted cell is given up because this is little.
+    ///
+    /// # Panics
+    /// If the robot's cell lies outside of the grid.
+    pub fn promises_of(&mut self, from: Cell) -> Raster<Option<Promise>> {
+        let mut reached = ViewPoints::new(&self.grid);
+        let costs = travel_costs(self.traversable.steps(), from);
+        costs.reached().for_each(|index| reached.insert(index));
+        let largest = self.gains.largest_changes(&reached);
+        Raster::from_fn(self.grid, |cell| {
+            let (change, from) = largest[self.grid.index(cell)?]?;
+            Some(Promise { change, from: self.grid.cell(from) })
+        })
+    }
+
     /// What became of every cell, for a robot in the cell `from`: explored means that none
     /// is [`CellStatus::Open`].
     ///
@@ -31,7 +59,8 @@ impl Planner {
     /// If the robot's cell lies outside of the grid.
     pub fn certificate(&mut self, map: &CoverageMap, from: Cell) -> Raster<CellStatus> {
         let mut in_sight = vec![InSight::Nowhere; self.grid.len()];
-        let candidates = self.candidates(from);
+        let mut candidates = self.candidates(from);
+        self.leave_out_vain(map, &mut candidates.indices);
         for view_point in candidates.costs.reached() {
             let is_candidate = candidates.indices.binary_search(&view_point).is_ok();
             let sight = if is_candidate { InSight::Candidate } else { InSight::Spent };
@@ -47,7 +76,7 @@ impl Planner {
             self.exploration.status(index, known, entropy, in_sight[index])
         });
         let is_over = !certificate.values().contains(&CellStatus::Open)
-            && self.candidates_beyond_a_passage(from).is_none();
+            && self.candidates_beyond_a_passage(map, from).is_none();
         if !is_over {
             let reached: Vec<usize> = candidates.costs.reached().collect();
             self.mark_not_seen(map, reached, &mut certificate);

@@ -4,35 +4,97 @@
 //! evaluated is above its bound, all candidates are evaluated; a candidate that was passed over
 //! because its bound is too low, while all that were evaluated keep theirs, stays passed over.
 
-use crate::decision::{REPORTED, Score};
+use crate::decision::{Contest, REPORTED, Score};
 use crate::{CandidateRecord, Planner};
-use covmap_gain::{GAIN_TOLERANCE, ViewPoints};
+use covmap::CoverageMap;
+use covmap_gain::{GAIN_TOLERANCE, ViewPoints, expected_changes};
+use rayon::prelude::*;
 
-/// So many candidates are evaluated first; then all that may still be better. To evaluate a few
-/// more costs less than another turn.
+/// So many candidates are evaluated first, and twice as many whenever that was not enough. To
+/// evaluate a few more costs less than another turn.
 const FIRST: usize = 64;
 
 impl Planner {
+    /// Passes over candidates until the best ones hold what is expected to change. With that the
+    /// order of the strategy is kept: who is passed over would have been chosen, and measured in
+    /// vain.
+    pub(crate) fn fill_and_pass_over(&mut self, map: &CoverageMap, contest: &mut Contest) {
+        let weighs = self.parameters().strategy.uses_gain();
+        let Some(least) = self.parameters().least_change() else {
+            if weighs {
+                self.fill_deciding_gains(contest);
+            }
+            return;
+        };
+        loop {
+            self.fill_deciding_gains(contest);
+            let vain = self.in_vain(map, contest, least);
+            if vain.is_empty() {
+                return;
+            }
+            vain.into_iter().for_each(|place| contest.pass_over(place));
+        }
+    }
+
+    /// The places of candidates that are evaluated and hold nothing that is expected to change.
+    fn in_vain(&self, map: &CoverageMap, contest: &Contest, least: f64) -> Vec<usize> {
+        let is_in_vain = |place: &usize| {
+            let cell = contest.records[*place].cell;
+            let index = self.grid.index(cell).filter(|index| self.gains.is_exact(*index));
+            index.is_some_and(|index| !self.promises(map, index, least))
+        };
+        if self.gains.tells_cells_apart() {
+            return contest.left().filter(is_in_vain).collect();
+        }
+        // The literal equations are slow: some of the best.
+        let mut places: Vec<usize> = contest.left().collect();
+        let better = |a: &usize, b: &usize| {
+            contest.records[*b].score.total_cmp(&contest.records[*a].score).then(a.cmp(b))
+        };
+        places.sort_by(better);
+        places.truncate(REPORTED);
+        places.into_par_iter().filter(is_in_vain).collect()
+    }
+
+    /// Whether some cell that is a reason to go to a view-point, whose gain is up to date, is expected
+    /// to change by at `least` so much.
+    pub(crate) fn promises(&self, map: &CoverageMap, index: usize, least: f64) -> bool {
+        if self.gains.tells_cells_apart() {
+            return self.gains.is_promising(index);
+        }
+        let (view_point, stencil) = (self.grid.cell(index), self.stencil());
+        let prediction = self.prediction_at(view_point);
+        stencil.beams.iter().any(|beam| {
+            let changes = expected_changes(map, &self.model, stencil, beam, prediction, view_point);
+            beam.cells.iter().zip(changes).any(|(met, change)| {
+                let cell = self.grid.index(view_point.offset(met.dx, met.dy));
+                #[allow(clippy::cast_possible_truncation, reason = "limits are f32")]
+                let distance = met.cell_distance as f32;
+                change >= least && cell.is_some_and(|cell| self.is_reason(cell, distance))
+            })
+        })
+    }
+
     /// Fills in the scores of all records, with the gains of those that may have the largest gain,
     /// and may be among the best reported; for the others, with an upper bound in place of the
     /// gain. So whatever is close to the best by less than what the fast gains are off is evaluated.
-    pub(crate) fn fill_deciding_gains(&mut self, records: &mut [CandidateRecord]) {
-        let all = self.view_points(records);
+    fn fill_deciding_gains(&mut self, contest: &mut Contest) {
+        let all = self.view_points(&contest.records);
         self.gains.refresh_bounds(&all);
         self.gains.take_exceeded();
+        let score = contest.score;
         let largest = |records: &[CandidateRecord]| {
             GAIN_TOLERANCE * records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max)
         };
-        let score = self.score();
         if let Score::Weighted(_) = score {
             // Eq. (16) divides by the largest gain: this one first.
-            self.settle(records, &all, 1, |record| record.gain, largest);
+            self.settle(contest, &all, 1, |record| record.gain, largest);
         }
         let off = |records: &[CandidateRecord]| score.uncertainty(records, GAIN_TOLERANCE);
-        self.settle(records, &all, REPORTED, |record| record.score, off);
-        if self.gains.take_exceeded() {
+        self.settle(contest, &all, REPORTED, |record| record.score, off);
+        if score != Score::Closest && self.gains.take_exceeded() {
             self.gains.refresh_gains(&all);
-            self.take_gains(records);
+            self.take_gains(contest);
         }
     }
 
@@ -40,22 +102,24 @@ impl Planner {
     /// both may be `off`.
     fn settle(
         &mut self,
-        records: &mut [CandidateRecord],
+        contest: &mut Contest,
         all: &ViewPoints,
         count: usize,
         key: impl Fn(&CandidateRecord) -> f64,
         off: impl Fn(&[CandidateRecord]) -> f64,
     ) {
         for turn in 0.. {
-            let is_exact = self.take_gains(records);
+            let is_exact = self.take_gains(contest);
+            let records = &contest.records;
             let mut doubtful = in_doubt(records, &is_exact, count, &key, off(records));
             if doubtful.is_empty() {
                 return;
             }
-            if turn == 0 && doubtful.len() > FIRST {
+            let most = FIRST << turn.min(20);
+            if doubtful.len() > most {
                 let larger = |a: &usize, b: &usize| key(&records[*b]).total_cmp(&key(&records[*a]));
-                doubtful.select_nth_unstable_by(FIRST, larger);
-                doubtful.truncate(FIRST);
+                doubtful.select_nth_unstable_by(most, larger);
+                doubtful.truncate(most);
             }
             self.evaluate(records, &doubtful, all);
         }
@@ -70,20 +134,20 @@ impl Planner {
     }
 
     /// Fills in gains, or bounds, and scores. Returns which are gains.
-    fn take_gains(&self, records: &mut [CandidateRecord]) -> Vec<bool> {
+    fn take_gains(&self, contest: &mut Contest) -> Vec<bool> {
         let take = |record: &mut CandidateRecord| {
             let Some(index) = self.grid.index(record.cell) else { return true };
             record.gain = self.gains.gain(index);
             self.gains.is_exact(index)
         };
-        let is_exact = records.iter_mut().map(take).collect();
-        self.score().apply(records);
+        let is_exact = contest.records.iter_mut().map(take).collect();
+        contest.apply();
         is_exact
     }
 }
 
 /// The places of the records with a bound that may be among the `count` largest by a `key`, if both
-/// that and the keys of gains may be `off`.
+/// that and the keys of gains may be `off`. Without a key, −∞, a record does not take part.
 fn in_doubt(
     records: &[CandidateRecord],
     is_exact: &[bool],
@@ -91,9 +155,11 @@ fn in_doubt(
     key: impl Fn(&CandidateRecord) -> f64,
     off: f64,
 ) -> Vec<usize> {
-    let exact = records.iter().zip(is_exact).filter(|(_, exact)| **exact);
-    let mut keys: Vec<f64> = exact.map(|(record, _)| key(record)).collect();
+    let takes_part = |i: &usize| key(&records[*i]) > f64::NEG_INFINITY;
+    let exact = (0..records.len()).filter(|i| is_exact[*i] && takes_part(i));
+    let mut keys: Vec<f64> = exact.map(|i| key(&records[i])).collect();
     keys.sort_unstable_by(|a, b| b.total_cmp(a));
     let least = keys.get(count - 1).map_or(f64::NEG_INFINITY, |k| k - 2.0 * off);
-    (0..records.len()).filter(|i| !is_exact[*i] && key(&records[*i]) >= least).collect()
+    let doubtful = |i: &usize| !is_exact[*i] && takes_part(i) && key(&records[*i]) >= least;
+    (0..records.len()).filter(doubtful).collect()
 }

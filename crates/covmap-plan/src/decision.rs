@@ -99,13 +99,52 @@ impl Score {
     }
 }
 
-/// The place of the best score; a tie is the first, in row-major order of cells.
-pub(crate) fn best(candidates: &[CandidateRecord]) -> Option<usize> {
-    let better = |best: Option<usize>, i: usize| match best {
-        Some(b) if candidates[i].score.total_cmp(&candidates[b].score).is_le() => Some(b),
-        _ => Some(i),
-    };
-    (0..candidates.len()).fold(None, better)
+/// The candidates of a decision, in row-major order of cells, and which of them are passed over:
+/// they count for the maxima of Eq. (16), but are not chosen.
+#[derive(Debug)]
+pub(crate) struct Contest {
+    pub(crate) records: Vec<CandidateRecord>,
+    pub(crate) score: Score,
+    passed_over: Vec<bool>,
+}
+
+impl Contest {
+    pub(crate) fn new(records: Vec<CandidateRecord>, score: Score) -> Self {
+        let passed_over = vec![false; records.len()];
+        let mut contest = Self { records, score, passed_over };
+        contest.apply();
+        contest
+    }
+
+    /// Scores anew.
+    pub(crate) fn apply(&mut self) {
+        self.score.apply(&mut self.records);
+        for (record, passed_over) in self.records.iter_mut().zip(&self.passed_over) {
+            if *passed_over {
+                record.score = f64::NEG_INFINITY;
+            }
+        }
+    }
+
+    /// Passes over a candidate.
+    pub(crate) fn pass_over(&mut self, place: usize) {
+        self.passed_over[place] = true;
+        self.records[place].score = f64::NEG_INFINITY;
+    }
+
+    /// The places of those that are not passed over.
+    pub(crate) fn left(&self) -> impl Iterator<Item = usize> {
+        (0..self.records.len()).filter(|place| !self.passed_over[*place])
+    }
+
+    /// The place of the best score; a tie is the first.
+    pub(crate) fn best(&self) -> Option<usize> {
+        let score = |place: usize| self.records[place].score;
+        self.left().fold(None, |best: Option<usize>, i| match best {
+            Some(b) if score(i).total_cmp(&score(b)).is_le() => Some(b),
+            _ => Some(i),
+        })
+    }
 }
 
 #[cfg(test)]
@@ -127,9 +166,18 @@ mod tests {
     }
 
     fn choose(score: Score, values: &[(f64, f64)]) -> Option<usize> {
-        let mut candidates = table(values);
-        score.apply(&mut candidates);
-        best(&candidates)
+        Contest::new(table(values), score).best()
+    }
+
+    #[test]
+    fn who_is_passed_over_still_counts_for_the_maxima() {
+        let mut contest =
+            Contest::new(table(&[(1.0, 1.0), (10.0, 8.0), (5.0, 2.0)]), Score::Weighted(1.0));
+        contest.pass_over(2);
+        contest.apply();
+        assert_eq!(contest.best(), Some(1));
+        assert_eq!(contest.records[0].gain_term, 0.1);
+        assert_eq!(contest.left().collect::<Vec<_>>(), [0, 1]);
     }
 
     #[test]

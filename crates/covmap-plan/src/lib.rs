@@ -33,11 +33,13 @@ mod travel_cost;
 mod traversable;
 mod window;
 
-pub use certificate::Reach;
+pub use certificate::{Promise, Reach};
 pub use decision::{CandidateRecord, Decision};
 pub use exploration::CellStatus;
 pub use memory::planner_bytes;
-pub use parameters::{BodyEvidence, PlannerError, PlannerParameters, Scope, StallRule};
+pub use parameters::{
+    BodyEvidence, Effort, PlannerError, PlannerParameters, Reason, Scope, StallRule,
+};
 pub use planner::Planner;
 pub use strategy::{Strategy, StrategyError};
 pub use travel_cost::{TravelCosts, travel_costs};

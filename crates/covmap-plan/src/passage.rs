@@ -2,7 +2,7 @@
 
 use crate::planner::{Candidates, Planner};
 use crate::travel_costs;
-use covmap::{Cell, Grid, Steps, neighbour, step_between};
+use covmap::{Cell, CoverageMap, Grid, Steps, neighbour, step_between};
 use covmap_gain::ViewPoints;
 
 /// A passage is worth trying if beyond it the robot could stand on so many times the area of
@@ -14,16 +14,24 @@ impl Planner {
     /// for a robot that can reach no candidate; `None` if there is no such passage.
     ///
     /// Cells at which the robot never bumped come first; then all, by steps at which it did not.
-    pub(crate) fn candidates_beyond_a_passage(&mut self, from: Cell) -> Option<Candidates> {
+    pub(crate) fn candidates_beyond_a_passage(
+        &mut self,
+        map: &CoverageMap,
+        from: Cell,
+    ) -> Option<Candidates> {
         let longest = self.parameters().longest_passage(self.grid.resolution())?;
         let steps = self.traversable.steps();
         let here = travel_costs(steps.clone(), from);
         let is_cut_off = |i: usize| self.traversable.at(i) && here.cost(i).is_none();
+        let cut_off: Vec<usize> = (0..self.grid.len()).filter(|i| is_cut_off(*i)).collect();
         let mut wanted = ViewPoints::new(&self.grid);
-        (0..self.grid.len()).filter(|i| is_cut_off(*i)).for_each(|i| wanted.insert(i));
+        cut_off.iter().for_each(|i| wanted.insert(*i));
         self.gains.refresh_sight(&wanted);
-        let is_candidate =
-            |i: usize| is_cut_off(i) && !self.measured.is_spent(i) && self.gains.has_reason(i);
+        let may_be = |i: &usize| !self.measured.is_spent(*i) && self.gains.has_reason(*i);
+        let mut offered = cut_off.into_iter().filter(may_be).collect();
+        self.leave_out_vain(map, &mut offered);
+        let is_candidate = |i: usize| offered.binary_search(&i).is_ok();
+        let is_cut_off = |i: usize| self.traversable.at(i) && here.cost(i).is_none();
         let least = ROOM * self.traversable.body_cells();
         let rooms = regions(&steps, least, is_cut_off, is_candidate);
         let nearest = |only_untried: bool| {

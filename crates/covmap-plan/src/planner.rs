@@ -1,6 +1,6 @@
 //! The planner: one owner of what is explored, what stalls, and what was computed before.
 
-use crate::decision::{REPORTED, Score, best};
+use crate::decision::{Contest, REPORTED, Score};
 use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
 use crate::traversable::Traversable;
@@ -10,10 +10,12 @@ use crate::{
     TravelCosts, travel_costs,
 };
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
-use covmap_gain::{GAIN_TOLERANCE, GainCache, Stencil, ViewPoints, expected_information_gain};
+use covmap_gain::{
+    GAIN_TOLERANCE, GainCache, RangePrediction, Stencil, ViewPoints, expected_information_gain,
+};
 use covmap_model::{SensorModel, cells_under_body, intercepted};
 use covmap_sonar::Scan;
-use nalgebra::Point2;
+use nalgebra::{Point2, Vector2};
 use rayon::prelude::*;
 
 /// Chooses view-points by the strategies of section 4, and knows when all is explored.
@@ -33,13 +35,15 @@ use rayon::prelude::*;
 #[derive(Debug, Clone)]
 pub struct Planner {
     parameters: PlannerParameters,
-    model: SensorModel,
+    pub(crate) model: SensorModel,
     pub(crate) grid: Grid,
     radius: f64,
     pub(crate) traversable: Traversable,
     pub(crate) exploration: Exploration,
     pub(crate) gains: GainCache,
     pub(crate) measured: Measured,
+    /// How much of a reading from each view-point would be new.
+    novelty: Vec<f64>,
     pub(crate) window: Option<Window>,
     /// The chosen view-point, and what was in sight of it when it was chosen.
     target: Option<(Cell, Vec<(usize, f32)>)>,
@@ -74,7 +78,8 @@ impl Planner {
         PlannerError::within("heading", heading, -1e9, 1e9)?;
         let grid = *outside.grid();
         let (prediction, upkeep) = (parameters.range_prediction(), parameters.upkeep());
-        let gains = GainCache::new(model, heading, grid, prediction, upkeep)?;
+        let gains = GainCache::new(model, heading, grid, prediction, upkeep)?
+            .with_least_change(parameters.least_change().unwrap_or(0.0));
         let window = match parameters.strategy {
             Strategy::IgWin { radius } => Some(Window::new(grid, radius)),
             _ => None,
@@ -91,6 +96,7 @@ impl Planner {
             radius,
             gains,
             measured: Measured::new(grid, scan_spacing),
+            novelty: vec![1.0; grid.len()],
             window,
             target: None,
         };
@@ -124,7 +130,7 @@ impl Planner {
             .collect();
         let weights: Vec<f64> = expected.iter().map(|s| self.exploration.weight(s.index)).collect();
         self.exploration.add_counts(|| intercepted(&self.model, &self.grid, scan));
-        self.measured.note(scan.pose.translation.vector.into());
+        self.note_look(scan.pose.translation.vector.into());
         self.take_over(map, changes);
         for (scan, weight) in expected.into_iter().zip(weights) {
             let touched = self.exploration.weight(scan.index) > weight;
@@ -135,6 +141,27 @@ impl Planner {
         if self.parameters.strategy.counting().is_some() {
             (0..self.grid.len()).for_each(|index| self.update_limit(map, index));
         }
+    }
+
+    /// A look from some place was taken: another one from near there would tell less that is new.
+    fn note_look(&mut self, at: Point2<f64>) {
+        self.measured.note(at);
+        let repeats = self.model.repeats();
+        let around = Vector2::repeat(repeats.reach());
+        for cell in self.grid.cells_between(at - around, at + around) {
+            let Some(index) = self.grid.index(cell) else { continue };
+            let left = repeats.left((self.grid.center(cell) - at).norm());
+            if left < 1.0 {
+                self.novelty[index] *= left;
+                self.gains.set_novelty(index, self.novelty[index]);
+            }
+        }
+    }
+
+    /// What is expected of a view-point, with how much there would be new.
+    pub fn prediction_at(&self, view_point: Cell) -> RangePrediction {
+        let novelty = self.grid.index(view_point).map_or(1.0, |index| self.novelty[index]);
+        RangePrediction { novelty, ..self.parameters.range_prediction() }
     }
 
     /// Takes note that the robot's body was all the way between two points, and of what that
@@ -271,10 +298,10 @@ impl Planner {
     ///
     /// # Panics
     /// If the robot's cell lies outside of the grid.
-    pub fn candidate_table(&mut self, from: Cell) -> Vec<CandidateRecord> {
+    pub fn candidate_table(&mut self, map: &CoverageMap, from: Cell) -> Vec<CandidateRecord> {
         let mut candidates = self.candidates(from);
         if candidates.indices.is_empty() {
-            candidates = self.candidates_beyond_a_passage(from).unwrap_or(candidates);
+            candidates = self.candidates_beyond_a_passage(map, from).unwrap_or(candidates);
         }
         let mut records = self.records(&candidates);
         self.fill_gains(&mut records);
@@ -301,18 +328,22 @@ impl Planner {
     }
 
     fn choose_here(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
-        let candidates = self
-            .windowed_candidates(map, from)
-            .or_else(|| self.candidates_beyond_a_passage(from))?;
+        let candidates = self.windowed_candidates(map, from);
+        let decision = candidates.and_then(|candidates| self.choose_among(map, &candidates));
+        decision.or_else(|| {
+            let beyond = self.candidates_beyond_a_passage(map, from)?;
+            self.choose_among(map, &beyond)
+        })
+    }
+
+    /// Chooses one of some candidates; `None` if all of them would measure in vain.
+    fn choose_among(&mut self, map: &CoverageMap, candidates: &Candidates) -> Option<Decision> {
         let with_gain = self.parameters.strategy.uses_gain();
-        let mut records = self.records(&candidates);
-        if with_gain {
-            self.fill_deciding_gains(&mut records);
-        } else {
-            self.score().apply(&mut records);
-        }
-        let decided_by_oracle = if with_gain { self.decide_ties(map, &mut records) } else { 0 };
-        let target = records[best(&records)?].cell;
+        let mut contest = Contest::new(self.records(candidates), self.score());
+        self.fill_and_pass_over(map, &mut contest);
+        let decided_by_oracle = if with_gain { self.decide_ties(map, &mut contest) } else { 0 };
+        let target = contest.records[contest.best()?].cell;
+        let records: Vec<_> = contest.left().map(|place| contest.records[place]).collect();
         let negative_gains = records.iter().filter(|r| r.gain < 0.0).count();
         let best = self.report(records);
         let path = candidates.costs.path_to(target)?;
@@ -352,28 +383,28 @@ impl Planner {
 
     /// Replaces the gains that could decide by those of the literal equations, and scores
     /// anew. Returns how many there were, where there was more than one.
-    fn decide_ties(&self, map: &CoverageMap, records: &mut [CandidateRecord]) -> usize {
-        let score = self.score();
-        let doubt = 2.0 * score.uncertainty(records, GAIN_TOLERANCE);
+    fn decide_ties(&self, map: &CoverageMap, contest: &mut Contest) -> usize {
+        let doubt = 2.0 * contest.score.uncertainty(&contest.records, GAIN_TOLERANCE);
+        let records = &mut contest.records;
         let top = |f: fn(&CandidateRecord) -> f64, records: &[CandidateRecord]| {
             records.iter().map(f).fold(f64::NEG_INFINITY, f64::max)
         };
         let best_score = top(|r| r.score, records);
         let contends = |r: &CandidateRecord| r.score >= best_score - doubt;
         let contenders = records.iter().filter(|r| contends(r)).count();
-        if contenders < 2 {
+        if contenders < 2 || best_score == f64::NEG_INFINITY {
             return 0;
         }
         // Eq. (16) divides by the largest gain, so that one must be exact as well.
         let largest = records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
         let near_max = top(|r| r.gain, records) - 2.0 * GAIN_TOLERANCE * largest;
         let (model, stencil) = (&self.model, self.stencil());
-        let prediction = self.parameters.range_prediction();
         let doubtful = records.par_iter_mut().filter(|r| contends(r) || r.gain >= near_max);
         doubtful.for_each(|r| {
+            let prediction = self.prediction_at(r.cell);
             r.gain = expected_information_gain(map, model, stencil, prediction, r.cell);
         });
-        score.apply(records);
+        contest.apply();
         contenders
     }
 
@@ -384,6 +415,9 @@ impl Planner {
         }
         loop {
             let mut candidates = self.candidates(from);
+            if self.window.is_some() {
+                self.leave_out_vain(map, &mut candidates.indices);
+            }
             let Some(window) = &mut self.window else {
                 return (!candidates.indices.is_empty()).then_some(candidates);
             };
@@ -403,6 +437,7 @@ impl Planner {
             }
             self.close_window(map);
             let mut left = self.candidates(from);
+            self.leave_out_vain(map, &mut left.indices);
             let nearest = left.costs.nearest(&left.indices);
             if let Some(nearest) = nearest {
                 self.open_window(self.grid.cell(nearest));
@@ -413,6 +448,16 @@ impl Planner {
                 }
             }
         }
+    }
+
+    /// Leaves out the candidates that would measure in vain.
+    pub(crate) fn leave_out_vain(&mut self, map: &CoverageMap, candidates: &mut Vec<usize>) {
+        let Some(least) = self.parameters.least_change() else { return };
+        let mut all = ViewPoints::new(&self.grid);
+        candidates.iter().for_each(|index| all.insert(*index));
+        self.gains.refresh_gains(&all);
+        let promises = |index: &usize| self.promises(map, *index, least);
+        *candidates = candidates.par_iter().copied().filter(promises).collect();
     }
 
     fn open_window(&mut self, center: Cell) {

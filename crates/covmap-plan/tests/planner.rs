@@ -2,11 +2,13 @@
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
 use covmap::{Cell, CoverageMap, Grid, Raster};
-use covmap_gain::{BeamError, GAIN_TOLERANCE, Stencil, expected_information_gain};
+use covmap_gain::{
+    BeamError, GAIN_TOLERANCE, Stencil, expected_changes, expected_information_gain,
+};
 use covmap_model::{
     FootprintRule, Linear, ModelParameters, SensorModel, integrate, integrate_body,
 };
-use covmap_plan::{CellStatus, Planner, PlannerError, PlannerParameters, Strategy};
+use covmap_plan::{CellStatus, Planner, PlannerError, PlannerParameters, Reason, Strategy};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
 use proptest::prelude::*;
@@ -22,6 +24,11 @@ struct Setting {
     planner: Planner,
 }
 
+/// What is in sight is a reason, whatever is expected to change.
+fn in_sight() -> PlannerParameters {
+    PlannerParameters { reason: Reason::InSight, ..PlannerParameters::standard() }
+}
+
 fn setting(strategy: Strategy, bins: usize, change: impl Fn(&mut PlannerParameters)) -> Setting {
     let mut model_parameters =
         ModelParameters { bins, usable_range: 1.5, ..ModelParameters::by_hand() };
@@ -31,7 +38,7 @@ fn setting(strategy: Strategy, bins: usize, change: impl Fn(&mut PlannerParamete
             (product.sigma_out.base, product.sigma_in) = (0.12, 0.3);
         });
     }
-    let mut parameters = PlannerParameters { strategy, ..PlannerParameters::standard() };
+    let mut parameters = PlannerParameters { strategy, ..in_sight() };
     change(&mut parameters);
     setting_of(&model_parameters, &SonarRing::b21r(), parameters)
 }
@@ -125,7 +132,7 @@ fn strategies() -> impl Generator<Value = Strategy> {
 /// candidates.
 fn check_decision(s: &mut Setting, from: Cell) -> Result<(), TestCaseError> {
     let decision = s.planner.clone().choose(&s.map, from);
-    let mut table = s.planner.candidate_table(from);
+    let mut table = s.planner.candidate_table(&s.map, from);
     prop_assert_eq!(decision.is_none(), table.is_empty());
     let largest = table.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
     table.sort_by(|a, b| b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell)));
@@ -137,7 +144,7 @@ fn check_decision(s: &mut Setting, from: Cell) -> Result<(), TestCaseError> {
 
 /// Compares every seventh candidate's gain with the literal equations.
 fn check_gains(s: &mut Setting, stencil: &Stencil, from: Cell) -> Result<(), TestCaseError> {
-    let table = s.planner.candidate_table(from);
+    let table = s.planner.candidate_table(&s.map, from);
     let largest = table.iter().map(|r| r.gain.abs()).fold(0.0, f64::max);
     for record in table.iter().step_by(7) {
         let prediction = s.parameters.range_prediction();
@@ -169,6 +176,66 @@ fn check_gains_after_every_scan(
     Ok(())
 }
 
+/// Compares who is chosen, or that nobody is, with what the literal equations promise.
+fn check_promise(s: &mut Setting, from: Cell, least: f64) -> Result<(), TestCaseError> {
+    const OFF: f64 = 1e-4;
+    let most = |s: &Setting, at: Cell| {
+        let (stencil, prediction) = (s.planner.stencil(), s.planner.prediction_at(at));
+        let changes = |beam: &covmap_gain::BeamStencil| {
+            expected_changes(&s.map, &s.model, stencil, beam, prediction, at)
+        };
+        let of_beam = |beam: &covmap_gain::BeamStencil| {
+            let cells = beam.cells.iter().zip(changes(beam));
+            let reasons = cells.filter_map(|(met, change)| {
+                let cell = s.map.grid().index(at.offset(met.dx, met.dy))?;
+                #[allow(clippy::cast_possible_truncation, reason = "limits are f32")]
+                let distance = met.cell_distance as f32;
+                s.planner.gains().is_reason(cell, distance).then_some(change)
+            });
+            reasons.fold(f64::NEG_INFINITY, f64::max)
+        };
+        stencil.beams.iter().map(of_beam).fold(f64::NEG_INFINITY, f64::max)
+    };
+    match s.planner.clone().choose(&s.map, from) {
+        Some(decision) if decision.passage.is_empty() => {
+            let most = most(s, decision.target);
+            prop_assert!(most >= least - OFF, "{:?} promises {most}", decision.target);
+        }
+        Some(_) => (),
+        None => {
+            for record in s.planner.candidate_table(&s.map, from).iter().step_by(17) {
+                let most = most(s, record.cell);
+                prop_assert!(most < least + OFF, "{:?} promises {most}", record.cell);
+            }
+        }
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(12))]
+
+    #[test]
+    fn who_is_chosen_promises_something(
+        scans in some_scans(), strategy in prop::sample::select(vec![
+            Strategy::Cl, Strategy::Ig, Strategy::IgWin { radius: 0.8 }, Strategy::IgCl { alpha: 0.3 },
+        ]),
+        by_cause in any::<bool>(), least in prop_oneof![0.001..0.3f64, 0.3..2.0f64]
+    ) {
+        let model = if by_cause { ModelParameters::b21r() } else { ModelParameters::by_hand() };
+        let model = ModelParameters { usable_range: 1.5, ..model };
+        let reason = Reason::ExpectedChange(least);
+        let parameters = PlannerParameters { strategy, reason, scan_spacing: 0.3, ..in_sight() };
+        let mut s = setting_of(&model, &SonarRing::b21r(), parameters);
+        s.stand(0.0, 0.0);
+        let home = s.map.grid().cell_at(Point2::origin()).unwrap();
+        for (x, y, ranges) in scans.iter().take(3) {
+            s.scan(*x, *y, ranges);
+            check_promise(&mut s, home, least)?;
+        }
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
@@ -186,7 +253,7 @@ proptest! {
         model in some_models(), offset in prop::sample::select(vec![0.0, 0.05, 0.1, 0.2]), scans in some_scans()
     ) {
         // With an offset of half a cell there are cells exactly where two rings meet.
-        let parameters = PlannerParameters { strategy: Strategy::Ig, ..PlannerParameters::standard() };
+        let parameters = PlannerParameters { strategy: Strategy::Ig, ..in_sight() };
         let s = setting_of(&model, &ring(offset), parameters);
         check_gains_after_every_scan(s, scans)?;
     }
@@ -196,7 +263,7 @@ proptest! {
         scans in some_scans(), tempering in 0.05..0.3f64
     ) {
         let model = ModelParameters { usable_range: 1.5, ..ModelParameters::b21r() }.with_product(|product| { product.tempering = tempering; });
-        let parameters = PlannerParameters { strategy: Strategy::Ig, ..PlannerParameters::standard() };
+        let parameters = PlannerParameters { strategy: Strategy::Ig, ..in_sight() };
         let s = setting_of(&model, &SonarRing::b21r(), parameters);
         check_gains_after_every_scan(s, scans)?;
     }
@@ -207,7 +274,7 @@ proptest! {
         scans in prop::collection::vec((-1.0..1.0f64, -0.7..0.7f64, some_ranges()), 1..3)
     ) {
         let model = ModelParameters { usable_range, ..model }.with_product(|product| { product.sigma_in = 0.3; });
-        let parameters = PlannerParameters { strategy: Strategy::Ig, ..PlannerParameters::standard() };
+        let parameters = PlannerParameters { strategy: Strategy::Ig, ..in_sight() };
         let s = setting_of(&model, &SonarRing::b21r(), parameters);
         check_gains_after_every_scan(s, scans)?;
     }
@@ -219,7 +286,7 @@ proptest! {
         let home = s.map.grid().cell_at(Point2::origin()).unwrap();
         for (x, y, ranges) in scans {
             s.scan(x, y, &ranges);
-            s.planner.candidate_table(home);
+            s.planner.candidate_table(&s.map, home);
             let mut fresh = setting(strategy, 11, |_| ());
             fresh.stand(0.0, 0.0);
             let all: Vec<covmap::Change> = s.map.grid().cells().map(|cell| {
@@ -245,7 +312,7 @@ proptest! {
             // What earlier decisions evaluated and bounded is kept.
             s.scan(x, y, &ranges);
             let decision = s.planner.choose(&s.map, home);
-            let mut table = s.planner.clone().candidate_table(home);
+            let mut table = s.planner.clone().candidate_table(&s.map, home);
             if matches!(strategy, Strategy::IgWin { .. }) {
                 continue;
             }
@@ -266,7 +333,7 @@ proptest! {
             s.scan(x, y, &ranges);
         }
         let unprepared = s.planner.clone().choose(&s.map, home);
-        let table = s.planner.candidate_table(home);
+        let table = s.planner.candidate_table(&s.map, home);
         let certificate = s.planner.certificate(&s.map, home);
         let open = certificate.values().iter().filter(|c| **c == CellStatus::Open).count();
         let decision = s.planner.choose(&s.map, home);

@@ -10,7 +10,7 @@ Each scan of the trace becomes a line ODOM and a line SONAR of the same time; no
 longest range, a missing reading 0. Read back, the log gives the same scans.
 
 Example:
-  cargo xtask log out/lab-IG_CL-0.3-1 --out lab.log
+  cargo xtask log out/lab-IG_CL-0.1-1 --out lab.log
 ";
 
 pub(super) const TRUTH_EXAMPLES: &str = "\

@@ -1,6 +1,6 @@
 //! Values that can be typed: numbers with their bounds, poses.
 
-use nalgebra::{Isometry2, Vector2};
+use nalgebra::{Isometry2, Point2, Vector2};
 use std::path::PathBuf;
 
 fn number(text: &str, min: f64, max: f64, unit: &str) -> Result<f64, String> {
@@ -48,6 +48,16 @@ pub(super) fn start(text: &str) -> Result<Isometry2<f64>, String> {
             Ok(Isometry2::new(Vector2::new(x, y), degrees.to_radians()))
         }
         _ => Err("three finite numbers are needed, as in 1.5,6,90".to_owned()),
+    }
+}
+
+pub(super) fn place(text: &str) -> Result<Point2<f64>, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y]) if [x, y].iter().all(|v| v.is_finite() && v.abs() < 1e7) => {
+            Ok(Point2::new(x, y))
+        }
+        _ => Err("two finite numbers are needed, as in 1.5,6".to_owned()),
     }
 }
 

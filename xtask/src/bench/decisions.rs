@@ -6,7 +6,7 @@ use super::table::{Row, Table, duration};
 use super::{Measuring, tiles};
 use anyhow::{Context, Result};
 use covmap_explore::{Config, Limits, Mission, Run, SimulatedRobot, explore};
-use covmap_plan::{CandidateRecord, Decision, StallRule, Strategy};
+use covmap_plan::{CandidateRecord, Decision, Reason, StallRule, Strategy};
 use covmap_world::World;
 use nalgebra::Point2;
 use std::ops::ControlFlow;
@@ -21,10 +21,11 @@ const EXPLORED: f64 = 0.7;
 pub(super) fn updates(config: &Config) -> [(&'static str, Config); 2] {
     let with = |model| Config { model, ..config.clone() };
     let model = || config.model.clone();
-    [
-        ("by cause", with(model().with_cause(|_| ()))),
-        ("by Eq. (9)", with(model().with_product(|_| ()))),
-    ]
+    let by_cause = with(model().with_cause(|_| ()));
+    let mut by_product = with(model().with_product(|_| ()));
+    // What is expected to change was found for the update by cause.
+    by_product.planner.reason = Reason::InSight;
+    [("by cause", by_cause), ("by Eq. (9)", by_product)]
 }
 
 /// The configuration with the strategy IG.
@@ -37,7 +38,7 @@ fn with_gain(config: &Config) -> Config {
 /// IG with every cell for ever a reason to measure: every reachable cell is a candidate.
 pub(super) fn for_ever(config: &Config) -> Config {
     let mut config = with_gain(config);
-    config.planner.scan_spacing = 0.0;
+    (config.planner.reason, config.planner.scan_spacing) = (Reason::InSight, 0.0);
     config.planner.entropy_threshold = 0.0;
     config.planner.stall_rule = StallRule::Literal;
     (config.planner.stall_limit, config.planner.max_counted_scans) = (1000, 1_000_000);
@@ -74,7 +75,7 @@ pub(super) fn small(
     let mut records = Vec::new();
     for _ in 0..extent.rounds.min(3) {
         let mut cold = situation.planner.clone();
-        let (seconds, found) = timed(|| cold.candidate_table(situation.at));
+        let (seconds, found) = timed(|| cold.candidate_table(&situation.map, situation.at));
         all.push(seconds);
         records = found;
         let mut cold = situation.planner.clone();
@@ -88,7 +89,7 @@ pub(super) fn small(
     progress.say("the next decisions …");
     let next =
         decide(&mut situation, decision.context("nothing to decide")?, extent.small_decisions)?;
-    let records = situation.planner.clone().candidate_table(situation.at);
+    let records = situation.planner.clone().candidate_table(&situation.map, situation.at);
     let after = compare(&situation, &records, extent.sample.min(20))?;
 
     let cells = format!("{side} × {side} cells {update}");

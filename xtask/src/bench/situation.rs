@@ -5,7 +5,7 @@ use anyhow::{Context, Result};
 use covmap::{Cell, CoverageMap, Grid};
 use covmap_explore::{Config, Mission, Robot, Run, SimulatedRobot};
 use covmap_gain::{Stencil, expected_information_gain};
-use covmap_model::{SensorModel, integrate, integrate_body};
+use covmap_model::{Looks, SensorModel, integrate_body};
 use covmap_plan::{Decision, Planner};
 use covmap_sonar::Scan;
 use covmap_world::{Drive, World};
@@ -18,6 +18,7 @@ pub(super) struct Situation<'a> {
     config: &'a Config,
     robot: SimulatedRobot<'a>,
     model: SensorModel,
+    looks: Looks,
     stencil: Stencil,
     heading: f64,
     clock: Clock,
@@ -48,6 +49,7 @@ impl<'a> Situation<'a> {
             heading,
             clock,
             grid: mission.grid,
+            looks: Looks::new(&model),
             model,
             at: start.context("the start lies in the grid")?,
         })
@@ -96,7 +98,7 @@ impl<'a> Situation<'a> {
 
     /// E\[I\] of a view-point by the equations as printed.
     pub(super) fn literal_gain(&self, view_point: Cell) -> f64 {
-        let prediction = self.config.planner.range_prediction();
+        let prediction = self.planner.prediction_at(view_point);
         expected_information_gain(&self.map, &self.model, &self.stencil, prediction, view_point)
     }
 
@@ -117,7 +119,7 @@ impl<'a> Situation<'a> {
     }
 
     fn take_over(&mut self, scan: &Scan) -> f64 {
-        let changes = integrate(&self.model, &mut self.map, scan);
+        let changes = self.looks.integrate(&self.model, &mut self.map, scan);
         self.clock.time(|| self.planner.observe(&self.map, scan, &changes)).0
     }
 }

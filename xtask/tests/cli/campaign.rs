@@ -96,7 +96,7 @@ fn a_line_holds_what_the_summary_of_the_same_run_does() {
     let mut lines = table.lines().map(|line| line.split(',').collect::<Vec<_>>());
     let columns = lines.next().unwrap();
     let run = lines.find(|run| run[2] == "IG_CL(.3)" && run[4] == "6").unwrap();
-    let line = "explore room.ron --resolution 0.2 --seed 6 --max-scans 12 --out one --quiet";
+    let line = "explore room.ron --strategy IG_CL:0.3 --resolution 0.2 --seed 6 --max-scans 12 --out one --quiet";
     shell.expect(line, 3);
     let summary = shell.json("one/summary.json");
     for (name, value) in summary.as_object().unwrap() {

@@ -88,7 +88,7 @@ fn a_run_writes_every_file_and_ends_when_its_budget_is_spent() {
     assert_eq!(fields.len(), KEYS.len());
     assert_eq!(summary["ending"], "BudgetSpent");
     assert_eq!(summary["scans"], 30);
-    assert_eq!(summary["strategy"], "IG_CL(.3)");
+    assert_eq!(summary["strategy"], "IG_CL(.1)");
 }
 
 #[test]
@@ -177,7 +177,7 @@ fn a_foreign_folder_is_refused_and_one_of_ours_is_replaced() {
     assert_eq!(shell.json("run/summary.json")["scans"], 30);
     // Another run does not take its place without a word.
     let other = short_run().replace("30", "5");
-    shell.refuse(&other, &["run: holds another run (explore lab, IG_CL(.3), seed 1", "--force"]);
+    shell.refuse(&other, &["run: holds another run (explore lab, IG_CL(.1), seed 1", "--force"]);
     shell.expect(&format!("{other} --force"), 3);
     assert!(!shell.path("run/note.txt").exists());
     assert_eq!(shell.json("run/summary.json")["scans"], 5);
@@ -194,11 +194,11 @@ fn the_names_of_folders_tell_runs_apart() {
     let b21r = shipped("configs/b21r.ron");
     let mut names = Vec::new();
     for (typed, name) in [
-        ("".to_owned(), "lab-IG_CL-0.3-1-max1"),
-        (format!("--config {b21r} --resolution 0.1"), "lab-IG_CL-0.3-1-max1"),
-        ("--resolution 0.2".to_owned(), "lab-IG_CL-0.3-1-r0.2-max1"),
-        ("--start 1,1,-90".to_owned(), "lab-IG_CL-0.3-1-at1_1_-90-max1"),
-        ("--while-driving 0.5".to_owned(), "lab-IG_CL-0.3-1-every0.5-max1"),
+        ("".to_owned(), "lab-IG_CL-0.1-1-max1"),
+        (format!("--config {b21r} --resolution 0.1"), "lab-IG_CL-0.1-1-max1"),
+        ("--resolution 0.2".to_owned(), "lab-IG_CL-0.1-1-r0.2-max1"),
+        ("--start 1,1,-90".to_owned(), "lab-IG_CL-0.1-1-at1_1_-90-max1"),
+        ("--while-driving 0.5".to_owned(), "lab-IG_CL-0.1-1-every0.5-max1"),
         (format!("--config {sonar8}"), "lab-IG_CL-0.3-1-sonar8-max1"),
     ] {
         shell.expect(&format!("explore {lab} --max-scans 1 --quiet {typed}"), 3);

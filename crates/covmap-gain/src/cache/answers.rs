@@ -73,6 +73,25 @@ impl GainCache {
         self.groups[group].has_reason >> lane & 1 == 1
     }
 
+    /// Whether some cell that is a reason to measure, no farther away than its limit, is expected to
+    /// gain at least so much by one of the beams from a view-point:
+    ///
+    /// ```text
+    /// Σ_d p(d | c) · I(h_i | d) ≥ least change
+    /// ```
+    ///
+    /// It is up to date where the gain [is exact](Self::is_exact). With the product of Eq. (9) it is
+    /// always true: its evaluation does not tell the cells apart.
+    pub fn is_promising(&self, view_point: usize) -> bool {
+        let (group, lane) = group_and_lane(self.grid.width(), view_point);
+        self.groups[group].promising >> lane & 1 == 1
+    }
+
+    /// Whether [`is_promising`](Self::is_promising) says something.
+    pub fn tells_cells_apart(&self) -> bool {
+        self.evaluator.tells_cells_apart()
+    }
+
     /// Those of some view-points which hold a reason to measure in sight, in row-major order.
     pub fn with_reason(&self, view_points: &ViewPoints) -> Vec<usize> {
         view_points.indices(|group| self.groups[group].has_reason)

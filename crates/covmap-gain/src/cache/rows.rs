@@ -141,15 +141,17 @@ impl WithSimd for RefreshBounds<'_> {
         }
         for i in all {
             mean[i] = average(&gain[i * count..(i + 1) * count]);
-            (groups[i].gain, groups[i].bound) = up_to_date(&states[i * count..(i + 1) * count]);
+            up_to_date(&mut groups[i], &states[i * count..(i + 1) * count]);
         }
     }
 }
 
-/// For which view-points of a group the gains of all beams are up to date, and the bounds.
-pub(super) fn up_to_date(states: &[BeamState]) -> (u16, u16) {
-    let both = |(gain, bound), state: &BeamState| (gain & state.gain, bound & state.bound);
-    states.iter().fold((u16::MAX, u16::MAX), both)
+/// For which view-points of a group the gains of all beams are up to date, and the bounds; and which
+/// promise enough.
+pub(super) fn up_to_date(group: &mut GroupState, states: &[BeamState]) {
+    group.gain = states.iter().fold(u16::MAX, |all, state| all & state.gain);
+    group.bound = states.iter().fold(u16::MAX, |all, state| all & state.bound);
+    group.promising = states.iter().fold(0, |any, state| any | state.promising);
 }
 
 /// The average over the beams, of each view-point of a group.

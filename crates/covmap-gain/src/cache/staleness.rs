@@ -39,6 +39,8 @@ pub(super) struct BeamState {
     pub(super) bound: u16,
     /// There is a reason to measure in sight.
     pub(super) has_reason: u16,
+    /// Some reason to measure is expected to gain enough, where E\[I\] is up to date.
+    pub(super) promising: u16,
     /// The values depend on the first so many cells of the beam.
     pub(super) horizon: u16,
 }
@@ -54,6 +56,8 @@ pub(super) struct GroupState {
     pub(super) bound: u16,
     /// There is a reason to measure in sight of some beam.
     pub(super) has_reason: u16,
+    /// Some reason to measure is expected to gain enough by some beam.
+    pub(super) promising: u16,
 }
 
 impl BeamState {
@@ -64,13 +68,18 @@ impl BeamState {
                 (self.sight, self.reason, self.gain, self.bound) = (0, 0, 0, 0);
             }
             CellChange::Posterior => (self.gain, self.bound) = (0, 0),
-            CellChange::Limit => self.reason = 0,
+            CellChange::Limit => (self.reason, self.gain) = (0, 0),
         }
     }
 
     /// Forgets gain and bound, whatever changed.
     pub(super) fn forget_gain(&mut self) {
         self.forget(CellChange::Posterior);
+    }
+
+    /// Forgets gain and bound of all but some view-points.
+    pub(super) fn keep_gains(&mut self, some: u16) {
+        (self.gain, self.bound) = (self.gain & some, self.bound & some);
     }
 }
 
@@ -79,13 +88,18 @@ impl GroupState {
         match change {
             CellChange::Reflection => (self.sight, self.gain, self.bound) = (0, 0, 0),
             CellChange::Posterior => (self.gain, self.bound) = (0, 0),
-            CellChange::Limit => self.sight = 0,
+            CellChange::Limit => (self.sight, self.gain) = (0, 0),
         }
     }
 
     /// Forgets gain and bound, whatever changed.
     pub(super) fn forget_gain(&mut self) {
         self.forget(CellChange::Posterior);
+    }
+
+    /// Forgets gain and bound of all but some view-points.
+    pub(super) fn keep_gains(&mut self, some: u16) {
+        (self.gain, self.bound) = (self.gain & some, self.bound & some);
     }
 }
 

@@ -25,6 +25,7 @@ fn kept(model: &SensorModel, grid: Grid) -> GainCache {
         gain: InformationGain::Eq14,
         unknown_reflection: 0.0,
         uniform_share: 0.0,
+        novelty: 1.0,
     };
     GainCache::new(model, 0.1, grid, prediction, Upkeep::Kept).unwrap()
 }

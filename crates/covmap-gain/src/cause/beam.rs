@@ -16,6 +16,8 @@ pub(super) struct CauseCell {
     pub(super) offset: isize,
     /// m.
     pub(super) bearing: usize,
+    /// d^l \[m\].
+    pub(super) distance: f32,
     /// f(d^l, θ).
     pub(super) free: f32,
 }
@@ -93,6 +95,7 @@ impl CauseBeam {
             dy: c.dy as isize,
             offset: c.dy as isize * width + c.dx as isize,
             bearing: parameters.bearing(c.across),
+            distance: to_f32(c.cell_distance),
             free: to_f32(parameters.passed(c.met())),
         };
         let cells: Vec<CauseCell> = beam.cells.iter().map(cell).collect();

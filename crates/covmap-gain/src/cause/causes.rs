@@ -13,6 +13,8 @@ const MOST: usize = 16;
 /// Who causes the outcomes of a beam, which are asked for in order of their range.
 pub(super) struct GroupCauses<'a> {
     parameters: &'a CauseParameters,
+    /// How much of a reading would be new.
+    novelty: &'a Lanes,
     /// So many cells are passed.
     passed: usize,
     /// v_m, and whether any is below 1.
@@ -26,9 +28,10 @@ pub(super) struct GroupCauses<'a> {
 
 impl<'a> GroupCauses<'a> {
     #[inline(always)]
-    pub(super) fn new(parameters: &'a CauseParameters) -> Self {
+    pub(super) fn new(parameters: &'a CauseParameters, novelty: &'a Lanes) -> Self {
         let (clear, none) = ([[1.0; LANES]; MOST], [0.0; LANES]);
-        Self { parameters, passed: 0, clear, is_hidden: false, ended: [none; MOST], any: none }
+        let (passed, is_hidden) = (0, false);
+        Self { parameters, novelty, passed, clear, is_hidden, ended: [none; MOST], any: none }
     }
 
     /// c_m of the bearing of a cell.
@@ -99,7 +102,10 @@ impl<'a> GroupCauses<'a> {
             }
         }
         let chance = to_f32(self.parameters.chance);
-        let share = map(&sum, |sum| 1.0 / (sum + chance));
+        let mut share = map(&sum, |sum| 1.0 / (sum + chance));
+        for lane in 0..LANES {
+            share[lane] *= self.novelty[lane];
+        }
         for lane in 0..LANES {
             self.any[lane] = sum[lane] * share[lane];
         }
@@ -114,6 +120,10 @@ impl<'a> GroupCauses<'a> {
     #[inline(always)]
     pub(super) fn of_no_echo(&self) -> Lanes {
         let share = to_f32(self.parameters.no_echo.share);
-        self.first().map(|first| share * first)
+        let mut any = self.first();
+        for lane in 0..LANES {
+            any[lane] *= share * self.novelty[lane];
+        }
+        any
     }
 }

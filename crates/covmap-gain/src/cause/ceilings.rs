@@ -143,38 +143,32 @@ impl Ceilings {
         });
     }
 
-    /// Adds the bound of a cell in which an echo may have ended, by c_m, L, and f where the cell was
+    /// The bound of a cell in which an echo may have ended, by c_m, L, and f where the cell was
     /// passed.
     #[inline(always)]
-    pub(super) fn add_end(
+    pub(super) fn of_end(
         &self,
-        sum: &mut Lanes,
         place: (usize, isize),
         (ended, any): (&Lanes, &Lanes),
         (band, free): (usize, f32),
-    ) {
-        self.add(sum, place, band, (&ONCE, ended));
+    ) -> Lanes {
+        let mut bound = self.bound(place, band, (&ONCE, ended));
         if free > 0.0 {
             let mut passed = [0.0; LANES];
             for lane in 0..LANES {
                 passed[lane] = (any[lane] - ended[lane]) * free;
             }
-            self.add(sum, place, PASSED, (&ONCE, &passed));
+            add_scaled(&mut bound, &self.bound(place, PASSED, (&ONCE, &passed)), 1.0);
         }
+        bound
     }
 
-    /// Adds the bound of a cell behind the end, by its share.
+    /// The bound of a cell behind the end, by its share.
     #[inline(always)]
-    pub(super) fn add_behind(
-        &self,
-        sum: &mut Lanes,
-        place: (usize, isize),
-        ended: &Lanes,
-        weight: f32,
-    ) {
+    pub(super) fn of_behind(&self, place: (usize, isize), ended: &Lanes, weight: f32) -> Lanes {
         let mut shares = [0.0; LANES];
         add_scaled(&mut shares, ended, weight);
-        self.add(sum, place, BEHIND, (&ONCE, &shares));
+        self.bound(place, BEHIND, (&ONCE, &shares))
     }
 
     /// Sums to which nothing is added yet.
@@ -183,24 +177,20 @@ impl Ceilings {
         CeilingSums { ceilings: self, all: [0.0; LANES], passed: [0.0; LANES] }
     }
 
-    /// Adds the smaller of the largest gain and of slope times share, of a pair of numbers, for
-    /// outcomes of which these are the sums of p and of p·share.
+    /// The smaller of the largest gain and of slope times share, of a pair of numbers, for outcomes
+    /// of which these are the sums of p and of p·share.
     #[inline(always)]
-    fn add(
-        &self,
-        sum: &mut Lanes,
-        (y, x): (usize, isize),
-        pair: usize,
-        (all, shares): (&Lanes, &Lanes),
-    ) {
+    fn bound(&self, (y, x): (usize, isize), pair: usize, (all, shares): (&Lanes, &Lanes)) -> Lanes {
         let stride = padded(self.grid.width());
         let first = (y * PAIRS + pair) * 2 * stride + PAD.wrapping_add_signed(x);
         let most = lanes_at(&self.largest, first);
         let slope = lanes_at(&self.largest, first + stride);
+        let mut bound = [0.0; LANES];
         for lane in 0..LANES {
             let (most, by_share) = (most[lane] * all[lane], slope[lane] * shares[lane]);
-            sum[lane] += if by_share < most { by_share } else { most };
+            bound[lane] = if by_share < most { by_share } else { most };
         }
+        bound
     }
 }
 
@@ -222,9 +212,9 @@ impl FrontSums for CeilingSums<'_> {
     }
 
     #[inline(always)]
-    fn add_cell(&self, gain: &mut Lanes, place: (usize, isize), free: f32) {
+    fn of_cell(&self, place: (usize, isize), free: f32) -> Lanes {
         let mut passed = [0.0; LANES];
         add_scaled(&mut passed, &self.passed, free);
-        self.ceilings.add(gain, place, PASSED, (&self.all, &passed));
+        self.ceilings.bound(place, PASSED, (&self.all, &passed))
     }
 }

@@ -71,21 +71,20 @@ impl AtEnd {
         bins.fold(0, |bits, (bin, large)| bits | u64::from(large) << bin)
     }
 
-    /// Adds the gain of a cell from each view-point of a group, by what c_m of its bearing counts
+    /// The gain of a cell from each view-point of a group, by what c_m of its bearing counts
     /// and L: s = weight·c_m and g = f·(L − c_m). In the terms of [`crate::evidence`], with t_min = (1 − s − g)/n,
     ///
     /// ```text
     /// e = n·(s·N(μ, σ) + g·N(0, σ_free)) / (1 − s − g)
     /// ```
     #[inline(always)]
-    pub(super) fn add(
+    pub(super) fn gain(
         &self,
-        sum: &mut Lanes,
         prior: &Prior<'_>,
         kernel: Kernel<'_>,
         ended: &Lanes,
         any: &Lanes,
-    ) {
+    ) -> Lanes {
         let bins = to_f32(as_f64(self.bins));
         let (mut by_end, mut by_free) = ([0.0; LANES], [0.0; LANES]);
         for lane in 0..LANES {
@@ -107,9 +106,6 @@ impl AtEnd {
             let of_bin = if kernel.large >> bin & 1 == 1 { w(&here) } else { map(&here, few) };
             add_product(&mut terms, h, &of_bin);
         }
-        let gain = gains(&terms, &above);
-        for lane in 0..LANES {
-            sum[lane] += gain[lane];
-        }
+        gains(&terms, &above)
     }
 }

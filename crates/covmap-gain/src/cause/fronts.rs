@@ -9,12 +9,11 @@ pub(super) struct Front {
     pub(super) any: Lanes,
 }
 
-/// Sums over the outcomes that end beyond a cell, and what the cell adds by them: its gain, or a
-/// bound of it.
+/// Sums over the outcomes that end beyond a cell, and what the cell gains by them, or a bound of it.
 pub(super) trait FrontSums {
     /// Adds an outcome, by p_k and L(k).
     fn add(&mut self, probability: &Lanes, any: &Lanes);
 
-    /// Adds what a cell gains by all outcomes so far, by f.
-    fn add_cell(&self, gain: &mut Lanes, place: (usize, isize), free: f32);
+    /// What a cell gains by all outcomes so far, by f.
+    fn of_cell(&self, place: (usize, isize), free: f32) -> Lanes;
 }

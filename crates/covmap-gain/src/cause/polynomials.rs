@@ -129,9 +129,9 @@ impl Polynomials {
         &self.coefficients[y * self.degree() * stride + PAD.wrapping_add_signed(x)..]
     }
 
-    /// Adds the gains by the shares `weight`·x.
+    /// The gains by the shares `weight`·x.
     #[inline(always)]
-    pub(super) fn add(&self, sum: &mut Lanes, place: (usize, isize), x: &Lanes, weight: f32) {
+    pub(super) fn gain(&self, place: (usize, isize), x: &Lanes, weight: f32) -> Lanes {
         let (stride, coefficients) = (padded(self.grid.width()), self.coefficients(place));
         let scale = weight / to_f32(self.largest);
         let mut gain = [0.0; LANES];
@@ -146,9 +146,7 @@ impl Polynomials {
                 gain[lane] *= x[lane] * scale;
             }
         }
-        for lane in 0..LANES {
-            sum[lane] += gain[lane];
-        }
+        gain
     }
 
     /// Sums to which nothing is added yet.
@@ -176,13 +174,14 @@ impl FrontSums for PowerSums<'_> {
         }
     }
 
-    /// Adds the gains by the shares `weight`·x for all the x that were added to the sums.
+    /// The gains by the shares `weight`·x for all the x that were added to the sums.
     #[inline(always)]
-    fn add_cell(&self, gain: &mut Lanes, place: (usize, isize), weight: f32) {
+    fn of_cell(&self, place: (usize, isize), weight: f32) -> Lanes {
         let Self { polynomials, sums } = self;
         let stride = padded(polynomials.grid.width());
         let coefficients = polynomials.coefficients(place);
         let scale = weight / to_f32(polynomials.largest);
+        let mut gain = [0.0; LANES];
         let mut factor = (1..polynomials.first).fold(1.0, |factor, _| factor * scale);
         for (power, sum) in sums[..polynomials.degree()].iter().enumerate() {
             factor *= scale;
@@ -191,6 +190,7 @@ impl FrontSums for PowerSums<'_> {
                 gain[lane] = fused(coefficient[lane], factor * sum[lane], gain[lane]);
             }
         }
+        gain
     }
 }
 

@@ -130,7 +130,7 @@ impl Sweep {
         );
         for (gain, more) in gains.iter_mut().flatten().zip(more.iter().flatten()) {
             for lane in 0..LANES {
-                gain[lane] += more[lane];
+                gain.gain[lane] += more.gain[lane];
             }
         }
         let is_small = |planes: &GainPlanes| planes.gains.len() <= KEPT_GAINS;

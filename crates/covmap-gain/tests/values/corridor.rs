@@ -9,8 +9,12 @@ use covmap_sonar::{Beam, SonarRing};
 use nalgebra::{Isometry2, Point2};
 
 /// What is unknown reflects nothing.
-pub(crate) const PLAIN: RangePrediction =
-    RangePrediction { gain: InformationGain::Eq14, unknown_reflection: 0.0, uniform_share: 0.0 };
+pub(crate) const PLAIN: RangePrediction = RangePrediction {
+    gain: InformationGain::Eq14,
+    unknown_reflection: 0.0,
+    uniform_share: 0.0,
+    novelty: 1.0,
+};
 
 /// Cells of 1 m. The sensors are rays from the centre of the robot.
 pub(crate) struct Corridor {

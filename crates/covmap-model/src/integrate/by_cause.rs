@@ -7,16 +7,17 @@ use covmap_sonar::Scan;
 
 /// For every beam what its reading means, and who caused it by the map as it is: all beams of a
 /// scan are explained by the map before the scan, so that their order does not matter. `None` for
-/// a reading that says nothing.
+/// a reading that says nothing. `novelty` is how much of each reading is new.
 pub(crate) fn explain(
     model: &SensorModel,
     parameters: &CauseParameters,
     map: &CoverageMap,
-    scan: &Scan,
+    (scan, novelty): (&Scan, &[f64]),
 ) -> Vec<Option<(Outcome, Causes)>> {
     let cause = |(beam, range): (usize, &covmap_sonar::Range)| {
         let outcome = model.outcome(*range)?;
-        Some((outcome, explain_beam(model, parameters, map, scan, beam, outcome)))
+        let causes = explain_beam(model, parameters, map, scan, beam, outcome);
+        Some((outcome, causes.by_as_much(novelty[beam])))
     };
     scan.ranges.iter().enumerate().map(cause).collect()
 }

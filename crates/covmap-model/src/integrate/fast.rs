@@ -18,18 +18,33 @@ use pulp::{Simd, WithSimd};
 /// # Panics
 /// If the model does not fit the map ([`SensorModel::fits`]), or the scan not the ring.
 pub fn integrate(model: &SensorModel, map: &mut CoverageMap, scan: &Scan) -> Vec<Change> {
-    integrate_on(model.registers(), model, map, scan)
+    integrate_new(model, map, scan, &vec![1.0; scan.ranges.len()])
+}
+
+/// The same of a scan of which so much of each beam's reading is new, in \[0, 1\]:
+/// [`crate::Looks`]. With the product of Eq. (9) all of it is.
+///
+/// # Panics
+/// As [`integrate`], or if there is not one number for each reading.
+pub fn integrate_new(
+    model: &SensorModel,
+    map: &mut CoverageMap,
+    scan: &Scan,
+    novelty: &[f64],
+) -> Vec<Change> {
+    integrate_on(model.registers(), model, map, (scan, novelty))
 }
 
 fn integrate_on(
     registers: pulp::Arch,
     model: &SensorModel,
     map: &mut CoverageMap,
-    scan: &Scan,
+    (scan, novelty): (&Scan, &[f64]),
 ) -> Vec<Change> {
     assert!(model.fits(map), "the model is for other bins or another resolution");
     assert_eq!(scan.ranges.len(), model.footprint().beams(), "one reading for each beam");
-    registers.dispatch(Integration::new(model, map, scan))
+    assert_eq!(scan.ranges.len(), novelty.len(), "one novelty for each reading");
+    registers.dispatch(Integration::new(model, map, (scan, novelty)))
 }
 
 /// A scan that is being integrated. Compiled for each kind of vector registers.
@@ -37,6 +52,7 @@ struct Integration<'a> {
     model: &'a SensorModel,
     map: &'a mut CoverageMap,
     scan: &'a Scan,
+    novelty: &'a [f64],
     grid: Grid,
     touched: Touched,
     /// The cells of all beams by their row-major index, in blocks of [`LANES`], and no cell
@@ -64,7 +80,11 @@ impl WithSimd for Integration<'_> {
 }
 
 impl<'a> Integration<'a> {
-    fn new(model: &'a SensorModel, map: &'a mut CoverageMap, scan: &'a Scan) -> Self {
+    fn new(
+        model: &'a SensorModel,
+        map: &'a mut CoverageMap,
+        (scan, novelty): (&'a Scan, &'a [f64]),
+    ) -> Self {
         let grid = *map.grid();
         let outcomes = scan.ranges.iter().filter_map(|range| model.outcome(*range));
         let reach = outcomes.map(|outcome| model.reach(outcome)).fold(0.0, f64::max);
@@ -73,7 +93,7 @@ impl<'a> Integration<'a> {
         let room = touched.slots.len();
         let (cells, places) = (Vec::with_capacity(room), Vec::with_capacity(room));
         let met = Vec::with_capacity(room);
-        Self { model, map, scan, grid, touched, cells, places, met }
+        Self { model, map, scan, novelty, grid, touched, cells, places, met }
     }
 
     /// All cells that the scan changes, and what it says of each.
@@ -100,7 +120,7 @@ impl<'a> Integration<'a> {
             }
             Update::Cause(parameters) => {
                 let mut terms = CauseTerms::new(parameters, *bins);
-                let explained = explain(model, parameters, self.map, self.scan);
+                let explained = explain(model, parameters, self.map, (self.scan, self.novelty));
                 for (beam, explained) in explained.iter().enumerate() {
                     let Some((outcome, causes)) = explained else { continue };
                     self.for_each_met(beam, *outcome, |this, covered, met| {
@@ -348,7 +368,7 @@ mod tests {
             let map_on = |registers: pulp::Arch| {
                 let mut map = empty_map(&model);
                 let changes: Vec<_> =
-                    scans.iter().map(|scan| integrate_on(registers, &model, &mut map, scan)).collect();
+                    scans.iter().map(|scan| integrate_on(registers, &model, &mut map, (scan, &[1.0; 24]))).collect();
                 (map, changes)
             };
             let scalar = map_on(pulp::Arch::Scalar);

@@ -27,6 +27,18 @@ pub struct NoEchoShare {
     pub share: f64,
 }
 
+/// How much readings from one place repeat each other; [`Looks`](crate::Looks) has the equations.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Repeats {
+    /// ρ_0: the probability that a second reading from the same place repeats the first.
+    pub share: f64,
+    /// λ: how far one must move \[m\] until ρ has fallen to .61 of that.
+    pub distance: f64,
+    /// ψ: the same for the angle between two axes \[rad\].
+    pub bearing: f64,
+}
+
 /// The parameters of the update by cause; [`Causes`](crate::Causes) has the equations.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -60,6 +72,8 @@ pub struct CauseParameters {
     pub beyond: f64,
     /// What a beam without an echo says.
     pub no_echo: NoEchoShare,
+    /// How much readings from one place repeat each other.
+    pub repeats: Repeats,
 }
 
 /// The most bearings.
@@ -74,7 +88,7 @@ impl CauseParameters {
             cell_depth: 1.3,
             unknown_coverage: 0.094,
             sharpness: 1.0,
-            chance: 2.0,
+            chance: 0.8,
             first_echo: 4.9,
             sigma_in: Linear { base: 0.1, per_cell_distance: 0.068, per_range: 0.0 },
             behind: 0.29,
@@ -83,6 +97,7 @@ impl CauseParameters {
             free: FreeSpace { share: 0.42, range: 0.8, width: 0.8, sigma: 0.06 },
             beyond: 0.1,
             no_echo: NoEchoShare { range: 0.3, share: 0.2 },
+            repeats: Repeats { share: 0.75, distance: 0.2, bearing: 0.13 },
         }
     }
 
@@ -110,6 +125,9 @@ impl CauseParameters {
         within("beyond", self.beyond, 0.0, 1.0)?;
         within("no_echo.range", self.no_echo.range, 0.0, range)?;
         within("no_echo.share", self.no_echo.share, 0.0, 1.0)?;
+        within("repeats.share", self.repeats.share, 0.0, 1.0)?;
+        within("repeats.distance", self.repeats.distance, 1e-3, 10.0)?;
+        within("repeats.bearing", self.repeats.bearing, 1e-3, 10.0)?;
         for (name, sigma) in [
             ("sigma_in", self.sigma_in.base),
             ("sigma_behind", self.sigma_behind),

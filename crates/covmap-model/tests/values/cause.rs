@@ -4,7 +4,7 @@ use super::{all_close, beam, close};
 use covmap::{Cell, CoverageMap, Grid};
 use covmap_model::{
     CauseParameters, FootprintRule, FreeSpace, Linear, ModelError, ModelParameters, NoEchoShare,
-    SensorModel, Update, integrate, integrate_literally,
+    Repeats, SensorModel, Update, integrate, integrate_literally,
 };
 use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
@@ -25,6 +25,7 @@ fn cause() -> CauseParameters {
         free: FreeSpace { share: 0.5, range: 4.0, width: 1.0, sigma: 0.5 },
         beyond: 0.5,
         no_echo: NoEchoShare { range: 3.0, share: 0.25 },
+        repeats: Repeats::NONE,
     }
 }
 

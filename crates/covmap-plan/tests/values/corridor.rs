@@ -5,7 +5,7 @@ use covmap_model::{
     FootprintRule, Linear, ModelParameters, NoEchoParameters, ProductParameters, SensorModel,
     Update,
 };
-use covmap_plan::{CellStatus, Decision, Planner, PlannerParameters, StallRule, Strategy};
+use covmap_plan::{CellStatus, Decision, Planner, PlannerParameters, Reason, StallRule, Strategy};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
 
@@ -42,6 +42,7 @@ pub(crate) fn two_bins(range: f64) -> ModelParameters {
 pub(crate) fn plain(strategy: Strategy) -> PlannerParameters {
     PlannerParameters {
         strategy,
+        reason: Reason::InSight,
         entropy_threshold: 0.1,
         scan_spacing: 0.0,
         passage_length: 0.0,
@@ -136,7 +137,7 @@ impl Corridor {
 
     /// The columns of L(c) for a robot in a cell.
     pub(crate) fn candidates(&mut self, from: i32) -> Vec<i32> {
-        let table = self.planner.candidate_table(Cell::new(from, 0));
+        let table = self.planner.candidate_table(&self.map, Cell::new(from, 0));
         table.iter().map(|record| record.cell.x).collect()
     }
 

@@ -80,7 +80,7 @@ fn gain_and_travel_cost_are_weighed_in_shares_of_the_largest() {
     for (alpha, expected) in [(0.3, 3), (0.9, 3), (4.0, 7)] {
         let mut corridor = corridor(Strategy::IgCl { alpha });
         corridor.know(8, &[0.9, 0.1]);
-        let table = corridor.planner.candidate_table(Cell::new(4, 0));
+        let table = corridor.planner.candidate_table(&corridor.map, Cell::new(4, 0));
         let [near, far, farthest] = table[..] else { panic!("{table:?}") };
         // 1 m, 3 m and 5 m away; the far ones gain more. By Eq. (9) no echo says
         // .2 + N(0, .5, x), which is [.764155 .235845]; the gains of [½ ½], [.9 .1] and the sure

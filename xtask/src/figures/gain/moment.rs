@@ -1,7 +1,7 @@
 //! What is known when one decision of a run is taken.
 
 use anyhow::{Context, Result};
-use covmap::{Cell, CoverageMap, Grid};
+use covmap::{Cell, CoverageMap, Grid, Raster};
 use covmap_explore::{Config, Event, Limits, Mission, SimulatedRobot, explore};
 use covmap_gain::{
     BeamStencil, GainCache, NEGLIGIBLE, RangeLikelihood, RangePrediction, Stencil, Upkeep,
@@ -32,6 +32,8 @@ pub(super) struct Moment {
     pub(super) decision: Decision,
     /// What the planner knew of gains after the decision.
     pub(super) gains: GainCache,
+    /// How much of a reading from each view-point would be new.
+    novelty: Raster<f64>,
     /// All candidates with their gains.
     pub(super) candidates: Vec<CandidateRecord>,
 }
@@ -67,7 +69,10 @@ impl Moment {
                     from: *from,
                     decision: decision.clone(),
                     gains: view.planner.gains().clone(),
-                    candidates: all.candidate_table(*from),
+                    novelty: Raster::from_fn(mission.grid, |cell| {
+                        view.planner.prediction_at(cell).novelty
+                    }),
+                    candidates: all.candidate_table(view.map, *from),
                 });
                 ControlFlow::Break(())
             }
@@ -102,8 +107,13 @@ impl Moment {
             GainCache::new(&self.model, 0.0, *self.grid(), self.prediction(), Upkeep::Kept)?;
         for cell in self.grid().cells() {
             cache.update(&self.map, cell);
+            cache.set_novelty(self.index(cell), self.novelty(cell));
         }
         Ok(cache)
+    }
+
+    fn novelty(&self, view_point: Cell) -> f64 {
+        self.novelty.get(view_point).copied().unwrap_or(1.0)
     }
 
     /// All candidates.
@@ -116,7 +126,8 @@ impl Moment {
     /// E\[I\] by the equations as printed.
     pub(super) fn literal_gain(&self, cell: Cell) -> f64 {
         let (map, model, stencil) = (&self.map, &self.model, &self.stencil);
-        expected_information_gain(map, model, stencil, self.prediction(), cell)
+        let prediction = RangePrediction { novelty: self.novelty(cell), ..self.prediction() };
+        expected_information_gain(map, model, stencil, prediction, cell)
     }
 
     pub(super) fn beam(&self, seen: Seen) -> &BeamStencil {
@@ -137,7 +148,7 @@ impl Moment {
     pub(super) fn any_cause(&self, seen: Seen, k: usize) -> f64 {
         let (beam, outcome) = (self.beam(seen), self.stencil.outcome(k));
         imagined_causes(&self.map, &self.model, beam, seen.view_point, outcome)
-            .map_or(0.0, |causes| causes.any)
+            .map_or(0.0, |causes| causes.by_as_much(self.novelty(seen.view_point)).any)
     }
 
     /// How many cells of a beam decide its values.

@@ -19,6 +19,7 @@ const PREDICTION: RangePrediction = RangePrediction {
     gain: covmap_gain::InformationGain::Eq14,
     unknown_reflection: 0.0,
     uniform_share: 0.0,
+    novelty: 1.0,
 };
 
 /// A histogram with what it is called.

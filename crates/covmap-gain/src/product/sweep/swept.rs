@@ -2,7 +2,7 @@
 
 use super::planes::Layout;
 use super::sums::mix_outcomes;
-use crate::outcomes::{AskedRow, GroupBeam, RowGains};
+use crate::outcomes::{AskedRow, BeamAnswer, GroupBeam, RowGains};
 use crate::product::tables::rings::DistanceRing;
 use covmap::lanes::{LANES, TOGETHER, add_product};
 use pulp::{Simd, WithSimd};
@@ -47,7 +47,9 @@ impl<'a> SweptRow<'a> {
     }
 
     pub(super) fn gains(self) -> RowGains {
-        self.beams.into_iter().map(|beam| beam.gain).collect()
+        // What a cell gains by all outcomes together stands nowhere: any may gain enough.
+        let answer = |beam: SweptBeam| BeamAnswer { gain: beam.gain, promising: u16::MAX };
+        self.beams.into_iter().map(answer).collect()
     }
 }
 
