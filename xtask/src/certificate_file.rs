@@ -49,6 +49,7 @@ pub(crate) fn why(path: &Path, grid: &Grid, at: Point2<f64>) -> Result<String> {
     let [status, entropy, counted] = [row[2], row[3], row[4]];
     let known = format!("{}, H = {entropy} nats, {counted} scans counted", status.to_lowercase());
     Ok(match (row[5], row[6], row[7]) {
+        _ if status == "Resolved" => known,
         ("", ..) => format!("{known}; no scan from a place in reach would tell of it"),
         (change, x, y) => format!(
             "{known}; one more scan is expected to lower H by {change} nats at most, from ({x}, {y})"
