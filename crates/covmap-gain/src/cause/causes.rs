@@ -103,9 +103,7 @@ impl<'a> GroupCauses<'a> {
         }
         let chance = to_f32(self.parameters.chance);
         let mut share = map(&sum, |sum| 1.0 / (sum + chance));
-        for lane in 0..LANES {
-            share[lane] *= self.novelty[lane];
-        }
+        share.iter_mut().zip(self.novelty).for_each(|(share, novelty)| *share *= novelty);
         for lane in 0..LANES {
             self.any[lane] = sum[lane] * share[lane];
         }
@@ -121,9 +119,7 @@ impl<'a> GroupCauses<'a> {
     pub(super) fn of_no_echo(&self) -> Lanes {
         let share = to_f32(self.parameters.no_echo.share);
         let mut any = self.first();
-        for lane in 0..LANES {
-            any[lane] *= share * self.novelty[lane];
-        }
+        any.iter_mut().zip(self.novelty).for_each(|(any, novelty)| *any *= share * novelty);
         any
     }
 }
