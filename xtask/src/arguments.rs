@@ -328,7 +328,7 @@ pub(crate) struct Explain {
     /// The number of the decision, counted from 0 as in the trace
     #[arg(long, value_name = "N", required_unless_present = "cell")]
     pub(crate) step: Option<usize>,
-    /// Tell instead what became of the cell at this place [m], and what one more scan could change
+    /// Tell instead what became of the cell at this place, in metres, and what one more scan could change
     #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true, conflicts_with = "step")]
     pub(crate) cell: Option<Point2<f64>>,
     #[command(flatten)]
