@@ -63,6 +63,17 @@ pub struct Run {
 }
 
 impl Run {
+    /// How far the robot turned on its way: the angles between one piece of the path and the next, each
+    /// at most π, summed up \[rad\].
+    pub fn turns(&self) -> f64 {
+        let pieces = self.trajectory.windows(2).map(|ends| ends[1] - ends[0]);
+        let pieces: Vec<_> = pieces.filter(|piece| piece.norm() > 0.0).collect();
+        let turn = |pair: &[nalgebra::Vector2<f64>]| {
+            libm::atan2(pair[0].perp(&pair[1]), pair[0].dot(&pair[1])).abs()
+        };
+        pieces.windows(2).map(turn).sum()
+    }
+
     /// The most that one more scan is expected to lower the entropy of some cell of a status by
     /// \[nats\]; `None` if there is none, or nothing is known of that.
     pub fn most_promised(&self, status: CellStatus) -> Option<f64> {

@@ -59,6 +59,9 @@ pub struct Summary {
     pub bumps: usize,
     /// Length of the driven path \[m\].
     pub path_length_m: f64,
+    /// How far it turned on the way: the angles between one piece of the path and the next, summed up
+    /// \[rad\].
+    pub turns_rad: f64,
     /// The certificate in numbers.
     pub cells: CellCounts,
     /// How good the map is.
@@ -98,6 +101,7 @@ impl Summary {
             decisions: run.decisions,
             bumps: run.bumped_at.len(),
             path_length_m: run.path_length,
+            turns_rad: run.turns(),
             cells: CellCounts::of(run.certificate.values()),
             score: *score,
             cut_off,

@@ -72,6 +72,11 @@ fn after_a_bump_the_robot_goes_back_to_where_it_came_from() {
     // The way there and back is driven.
     let length: f64 = xs.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
     close(run.path_length, length, 1e-12);
+    // In a corridor all turns are half ones.
+    let ways: Vec<f64> =
+        xs.windows(2).map(|pair| pair[1] - pair[0]).filter(|way| *way != 0.0).collect();
+    let turned = ways.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
+    close(run.turns(), std::f64::consts::PI * f64::from(u32::try_from(turned).unwrap()), 1e-9);
     assert!(xs.iter().all(|x| *x <= 3.0 + 1e-12));
     // The next decision is made from the cell that it came from, and no one enters that cell.
     let next = events[bump..].iter().find_map(|e| match e {
