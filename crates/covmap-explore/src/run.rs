@@ -289,7 +289,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
                 Drive::Bumped { at } => {
                     self.advance(at);
                     self.bumped_at.push(at);
-                    self.planner.bump(self.cell, cell);
+                    self.planner.bump(self.cell, cell, at);
                     self.body_touched(at, goal);
                     let event = Event::Bump { cell, at, towards: goal };
                     self.advance(home);

@@ -29,8 +29,8 @@ pub struct CandidateRecord {
 pub struct Decision {
     /// The chosen view-point.
     pub target: Cell,
-    /// The cells on the way there, without the one the robot is in, with the target; empty
-    /// if the robot stays in its cell.
+    /// The corners of the way there, cells between whose centres it leads straight, without the one the
+    /// robot is in, with the target; empty if the robot stays in its cell.
     pub path: Vec<Cell>,
     /// The cells of the passage that the robot tries, though they look blocked: it can reach
     /// no candidate but beyond them. Mostly none.

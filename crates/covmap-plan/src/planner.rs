@@ -187,17 +187,18 @@ impl Planner {
         }
     }
 
-    /// Takes note that the robot drove from the centre of one cell to that of a neighbour, where
-    /// it stands now: it can always drive that step again, and back.
+    /// Takes note that the robot drove from the centre of one cell straight to that of another, where it
+    /// stands now: if that is a neighbour it can always drive that step again, and back.
     pub fn drove(&mut self, from: Cell, to: Cell) {
         self.traversable.drive(from, to);
         self.stand_on(to);
     }
 
-    /// Takes note that the robot bumped into something when it drove from one cell to a
-    /// neighbour: that step is closed, and if it is a straight one the cell is blocked, unless the
-    /// robot stood there.
-    pub fn bump(&mut self, from: Cell, to: Cell) {
+    /// Takes note that the robot bumped into something at a place \[m\] when it drove from the centre of
+    /// one cell straight to that of another: the step there is closed, and if it is a straight one the
+    /// cell is blocked, unless the robot stood there.
+    pub fn bump(&mut self, from: Cell, to: Cell, at: Point2<f64>) {
+        let (from, to) = self.traversable.step_at(from, to, at);
         self.traversable.bump(from, to);
         self.target = None;
     }
@@ -329,15 +330,20 @@ impl Planner {
 
     fn choose_here(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
         let candidates = self.windowed_candidates(map, from);
-        let decision = candidates.and_then(|candidates| self.choose_among(map, &candidates));
+        let decision = candidates.and_then(|candidates| self.choose_among(map, from, &candidates));
         decision.or_else(|| {
             let beyond = self.candidates_beyond_a_passage(map, from)?;
-            self.choose_among(map, &beyond)
+            self.choose_among(map, from, &beyond)
         })
     }
 
     /// Chooses one of some candidates; `None` if all of them would measure in vain.
-    fn choose_among(&mut self, map: &CoverageMap, candidates: &Candidates) -> Option<Decision> {
+    fn choose_among(
+        &mut self,
+        map: &CoverageMap,
+        from: Cell,
+        candidates: &Candidates,
+    ) -> Option<Decision> {
         let with_gain = self.parameters.strategy.uses_gain();
         let mut contest = Contest::new(self.records(candidates), self.score());
         self.fill_and_pass_over(map, &mut contest);
@@ -346,7 +352,10 @@ impl Planner {
         let records: Vec<_> = contest.left().map(|place| contest.records[place]).collect();
         let negative_gains = records.iter().filter(|r| r.gain < 0.0).count();
         let best = self.report(records);
-        let path = candidates.costs.path_to(target)?;
+        let mut path = candidates.costs.path_to(target)?;
+        if candidates.passage.is_empty() {
+            path = self.traversable.pulled_tight(from, &path);
+        }
         let passage = candidates.passage.iter().map(|i| self.grid.cell(*i)).collect();
         let candidates = candidates.indices.len();
         self.target = Some((target, self.cells_in_sight(target)));

@@ -1,5 +1,7 @@
 //! Where the robot can stand, and go.
 
+mod tight;
+
 use crate::Reach;
 use covmap::{Cell, Grid, STEPS, Steps, opposite, step_between};
 
@@ -19,6 +21,9 @@ use covmap::{Cell, Grid, STEPS, Steps, opposite, step_between};
 #[derive(Debug, Clone)]
 pub(crate) struct Traversable {
     grid: Grid,
+    /// The robot's radius, in cells, and how many cells around it may matter.
+    radius_in_cells: f64,
+    reach: i32,
     /// Cells that block a view-point, relative to it.
     disc: Vec<(i32, i32)>,
     /// Cells that block a step, relative to where it begins, and neither of its ends.
@@ -55,6 +60,8 @@ impl Traversable {
         let none = vec![false; grid.len()];
         Self {
             grid,
+            radius_in_cells: radius / r,
+            reach,
             disc: square().filter(|at| touches((0, 0), *at)).collect(),
             between: std::array::from_fn(between),
             blockers: vec![0; grid.len()],

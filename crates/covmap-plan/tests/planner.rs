@@ -419,7 +419,7 @@ fn a_passage_that_looks_blocked_is_tried_when_nothing_else_is_left() {
         assert!(s.map.grid().center(decision.target).x > -0.3);
         let first = decision.path.iter().position(|cell| *cell == decision.passage[0]).unwrap();
         let before = if first == 0 { home } else { decision.path[first - 1] };
-        s.planner.bump(before, decision.passage[0]);
+        s.planner.bump(before, decision.passage[0], s.map.grid().center(before));
         tries += 1;
     }
     assert!((2..=300).contains(&tries), "{tries}");

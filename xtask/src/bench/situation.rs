@@ -80,8 +80,8 @@ impl<'a> Situation<'a> {
         let mut seconds = 0.0;
         for cell in &decision.path {
             let (from, to) = (self.grid.center(self.at), self.grid.center(*cell));
-            if self.robot.drive(from, to) != Drive::Arrived {
-                self.planner.bump(self.at, *cell);
+            if let Drive::Bumped { at } = self.robot.drive(from, to) {
+                self.planner.bump(self.at, *cell, at);
                 break;
             }
             seconds += self.moved(from, to);

@@ -29,7 +29,7 @@ fn a_passage_is_tried_up_to_its_length() {
     assert_eq!([2.0, 1.99].map(tried), [Some(vec![3, 4]), None]);
     // Until somebody bumped into it.
     let mut corridor = corridor(12, 2.0, &[11], &[3, 4]);
-    corridor.planner.bump(Cell::new(3, 0), Cell::new(4, 0));
+    corridor.planner.bump(Cell::new(3, 0), Cell::new(4, 0), nalgebra::Point2::origin());
     assert_eq!(passage(&mut corridor, 0), None);
 }
 

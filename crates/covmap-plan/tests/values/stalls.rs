@@ -212,7 +212,7 @@ fn a_scan_counts_for_what_was_in_sight_when_its_place_was_chosen() {
     assert_eq!(corridor.counted(CELL), 2);
     // After a bump nothing is chosen.
     let mut corridor = chosen();
-    corridor.planner.bump(Cell::new(1, 0), Cell::new(2, 0));
+    corridor.planner.bump(Cell::new(1, 0), Cell::new(2, 0), nalgebra::Point2::origin());
     corridor.know(3, &wall);
     corridor.look_in_vain(1);
     assert_eq!(corridor.counted(CELL), 0);

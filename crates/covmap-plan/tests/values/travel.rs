@@ -113,7 +113,7 @@ fn an_unknown_cell_is_open_once_the_body_was_over_its_centre() {
 fn a_cell_that_was_bumped_into_is_blocked_for_good() {
     let mut corridor = corridor(|_| (), 0, 0.3);
     assert_eq!(corridor.candidates(0), [4]);
-    corridor.planner.bump(Cell::new(1, 0), Cell::new(2, 0));
+    corridor.planner.bump(Cell::new(1, 0), Cell::new(2, 0), nalgebra::Point2::origin());
     assert_eq!(corridor.candidates(0), [0; 0]);
     corridor.know(2, &[0.99, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001]);
     assert_eq!(corridor.candidates(0), [0; 0]);
@@ -149,7 +149,7 @@ fn a_bump_closes_its_step_and_the_cell_unless_the_robot_stood_there() {
         if stood {
             corridor.planner.stand_on(Cell::new(2, 0));
         }
-        corridor.planner.bump(Cell::new(1, 0), Cell::new(2, 0));
+        corridor.planner.bump(Cell::new(1, 0), Cell::new(2, 0), nalgebra::Point2::origin());
         [reached(&corridor, 0), reached(&corridor, 3)]
     };
     assert_eq!(bump(false), [[true, true, false, false], [false, false, false, true]]);
