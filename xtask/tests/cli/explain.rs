@@ -94,3 +94,27 @@ fn traces_that_lie_are_refused() {
     let decisions = decisions.replacen("\"gain\":", "\"gain\":1", 1);
     refuse(&format!("{scans}{{\"Decision\"{decisions}"), "differs");
 }
+
+#[test]
+fn what_became_of_a_cell_is_told() {
+    let shell = explored("IG");
+    let typed = shell.expect("explain run --cell 3,2", 0);
+    assert!(typed.out.contains("H = ") && typed.out.contains("scans counted"), "{}", typed.out);
+    // In the middle of a wall that the robot has seen.
+    let table = std::fs::read_to_string(shell.path("run/certificate.csv")).unwrap();
+    let told = table.lines().skip(1).find(|line| {
+        let row: Vec<&str> = line.split(',').collect();
+        row[2] != "Resolved" && row[5].parse::<f64>().is_ok_and(|change| change > 0.01)
+    });
+    let row: Vec<&str> = told.unwrap().split(',').collect();
+    let typed = shell.expect(&format!("explain run --cell {},{}", row[0], row[1]), 0);
+    let expected =
+        format!("expected to lower H by {} nats at most, from ({}, {})", row[5], row[6], row[7]);
+    assert!(typed.out.contains(&expected), "{} {expected}", typed.out);
+    shell.refuse("explain run --cell 999,2", &["(999, 2) is not in the map"]);
+    let typed = shell.expect("explain run --cell 3", 2);
+    assert!(typed.err.contains("two finite numbers are needed"), "{}", typed.err);
+    assert!(shell.expect("explain run", 2).err.contains("--step"));
+    shell.write("run/certificate.csv", "x,y\n1,2\n");
+    shell.refuse("explain run --cell 3,2", &["certificate.csv: another version wrote it"]);
+}

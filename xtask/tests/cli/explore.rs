@@ -4,7 +4,7 @@ use crate::typed::{Shell, shipped, short_run};
 use covmap::CoverageMap;
 use covmap_io::{MapCell, MapServerMap, load_map_server};
 
-const FILES: [&str; 15] = [
+const FILES: [&str; 16] = [
     "summary.json",
     "trace.jsonl",
     "belief.bin",
@@ -18,10 +18,11 @@ const FILES: [&str; 15] = [
     "partial.png",
     "partial.svg",
     "certificate.png",
+    "certificate.csv",
     "reliability.svg",
     "reliability.png",
 ];
-const KEYS: [&str; 26] = [
+const KEYS: [&str; 27] = [
     "world",
     "strategy",
     "update",
@@ -32,6 +33,7 @@ const KEYS: [&str; 26] = [
     "decisions",
     "bumps",
     "path_length_m",
+    "turns_rad",
     "cells",
     "completeness",
     "wall_recall",
@@ -89,6 +91,20 @@ fn a_run_writes_every_file_and_ends_when_its_budget_is_spent() {
     assert_eq!(summary["ending"], "BudgetSpent");
     assert_eq!(summary["scans"], 30);
     assert_eq!(summary["strategy"], "IG_CL(.1)");
+}
+
+#[test]
+fn more_effort_takes_more_scans() {
+    let shell = Shell::new();
+    let lab = shipped("scenarios/lab.ron");
+    let scans = ["quick", "standard", "thorough"].map(|effort| {
+        shell.expect(&format!("explore {lab} --resolution 0.2 --quiet --effort {effort}"), 0);
+        let summary = format!("out/lab-IG_CL-0.1-1-{effort}-r0.2/summary.json");
+        shell.json(&summary)["scans"].as_u64().unwrap()
+    });
+    assert!(scans.is_sorted_by(|a, b| a < b), "{scans:?}");
+    let typed = shell.expect(&format!("explore {lab} --effort lazy"), 2);
+    assert!(typed.err.contains("quick, standard, thorough"), "{}", typed.err);
 }
 
 #[test]
