@@ -43,7 +43,7 @@ pub(super) fn draw(moment: &Moment) -> Result<Drawing> {
     let evaluated = shown.iter().filter(|shown| shown.is_exact).count();
     let color_of = |is_exact| if is_exact { ORANGE } else { pale(GREY) };
     let mut drawing = Drawing::new(
-        "A decision by IG: most candidates need no gain, their bounds are enough",
+        "A decision by IG: where a bound is low enough no gain is needed",
         &format!("{}; {} candidates", moment.words(), shown.len()),
         [WIDTH, 70.0 + 24.0 + height + 64.0 + 545.0],
     );
