@@ -56,6 +56,16 @@ impl Planner {
         places.into_par_iter().filter(is_in_vain).collect()
     }
 
+    /// Leaves out the candidates that would measure in vain.
+    pub(crate) fn leave_out_vain(&mut self, map: &CoverageMap, candidates: &mut Vec<usize>) {
+        let Some(least) = self.parameters.least_change() else { return };
+        let mut all = ViewPoints::new(&self.grid);
+        candidates.iter().for_each(|index| all.insert(*index));
+        self.gains.refresh_gains(&all);
+        let promises = |index: &usize| self.promises(map, *index, least);
+        *candidates = candidates.par_iter().copied().filter(promises).collect();
+    }
+
     /// Whether some cell that is a reason to go to a view-point, whose gain is up to date, is expected
     /// to change by at `least` so much.
     pub(crate) fn promises(&self, map: &CoverageMap, index: usize, least: f64) -> bool {
@@ -79,10 +89,14 @@ impl Planner {
     /// and may be among the best reported; for the others, with an upper bound in place of the
     /// gain. So whatever is close to the best by less than what the fast gains are off is evaluated.
     fn fill_deciding_gains(&mut self, contest: &mut Contest) {
-        let all = self.view_points(&contest.records);
-        self.gains.refresh_bounds(&all);
+        let (all, score) = (self.view_points(&contest.records), contest.score);
+        if score == Score::Closest {
+            // Gains tell only who would measure in vain: those of the nearest are enough.
+            self.gains.refresh_sight(&all);
+        } else {
+            self.gains.refresh_bounds(&all);
+        }
         self.gains.take_exceeded();
-        let score = contest.score;
         let largest = |records: &[CandidateRecord]| {
             GAIN_TOLERANCE * records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max)
         };
@@ -135,10 +149,12 @@ impl Planner {
 
     /// Fills in gains, or bounds, and scores. Returns which are gains.
     fn take_gains(&self, contest: &mut Contest) -> Vec<bool> {
+        let weighs = contest.score != Score::Closest;
         let take = |record: &mut CandidateRecord| {
             let Some(index) = self.grid.index(record.cell) else { return true };
-            record.gain = self.gains.gain(index);
-            self.gains.is_exact(index)
+            let is_exact = self.gains.is_exact(index);
+            record.gain = if is_exact || weighs { self.gains.gain(index) } else { 0.0 };
+            is_exact
         };
         let is_exact = contest.records.iter_mut().map(take).collect();
         contest.apply();

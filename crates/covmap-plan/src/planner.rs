@@ -34,7 +34,7 @@ use rayon::prelude::*;
 /// [`choose`]: Planner::choose
 #[derive(Debug, Clone)]
 pub struct Planner {
-    parameters: PlannerParameters,
+    pub(crate) parameters: PlannerParameters,
     pub(crate) model: SensorModel,
     pub(crate) grid: Grid,
     radius: f64,
@@ -457,16 +457,6 @@ impl Planner {
                 }
             }
         }
-    }
-
-    /// Leaves out the candidates that would measure in vain.
-    pub(crate) fn leave_out_vain(&mut self, map: &CoverageMap, candidates: &mut Vec<usize>) {
-        let Some(least) = self.parameters.least_change() else { return };
-        let mut all = ViewPoints::new(&self.grid);
-        candidates.iter().for_each(|index| all.insert(*index));
-        self.gains.refresh_gains(&all);
-        let promises = |index: &usize| self.promises(map, *index, least);
-        *candidates = candidates.par_iter().copied().filter(promises).collect();
     }
 
     fn open_window(&mut self, center: Cell) {
