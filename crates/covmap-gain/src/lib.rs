@@ -23,6 +23,7 @@
 //!     gain: InformationGain::Eq14,
 //!     unknown_reflection: 0.0,
 //!     uniform_share: 0.0,
+//!     novelty: 1.0,
 //! };
 //! let mut gains = GainCache::new(&model, 0.0, grid, prediction, Upkeep::Kept)?;
 //! gains.refresh_gains(&ViewPoints::one(&grid, 620));

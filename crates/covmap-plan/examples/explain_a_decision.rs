@@ -58,7 +58,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         planner.observe(&map, &scan, &changes);
         let decision = planner.choose(&map, from).ok_or("nothing is open")?;
         println!(
-            "{strategy}: {} candidates, {} steps to go",
+            "{strategy}: {} candidates, straight lines to go: {}",
             decision.candidates,
             decision.path.len()
         );
