@@ -1,6 +1,7 @@
 //! What can be typed.
 
 mod bench;
+mod effort;
 mod experiments;
 mod files;
 mod memory;
@@ -17,7 +18,8 @@ pub(crate) use safe_map::SafeMap;
 use crate::campaign::{Shard, VERSION};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use covmap_model::Registers;
-use covmap_plan::{Effort, Strategy};
+use covmap_plan::Strategy;
+use effort::EffortName;
 use nalgebra::{Isometry2, Point2};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -333,27 +335,6 @@ pub(crate) struct Explain {
     pub(crate) cell: Option<Point2<f64>>,
     #[command(flatten)]
     pub(crate) force: Force,
-}
-
-/// How much is measured.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum EffortName {
-    /// The floor plan, with a third of the scans of thorough
-    Quick,
-    /// Half of them
-    Standard,
-    /// The best map
-    Thorough,
-}
-
-impl EffortName {
-    pub(crate) fn effort(self) -> Effort {
-        match self {
-            Self::Quick => Effort::Quick,
-            Self::Standard => Effort::Standard,
-            Self::Thorough => Effort::Thorough,
-        }
-    }
 }
 
 /// Which sensors of a log are read.

@@ -312,6 +312,9 @@ impl GainCache {
     /// for cells that none of them covers; for all with the product of Eq. (9), whose evaluation does
     /// not tell the cells apart.
     pub fn largest_changes(&mut self, view_points: &ViewPoints) -> Vec<Option<(f64, usize)>> {
+        if !self.tells_cells_apart() {
+            return vec![None; self.grid.len()];
+        }
         self.refresh_sight(view_points);
         let (per_row, beams) = (groups_per_row(&self.grid), self.beams.len());
         let stale = vec![BeamState::default(); per_row * beams];
@@ -364,8 +367,8 @@ impl GainCache {
         let groups = self.groups.iter_mut().zip(self.states.chunks_mut(self.beams.len()));
         let forgotten = groups.zip(wanted.groups()).filter(|(_, wanted)| **wanted != 0);
         for ((group, states), _) in forgotten {
-            group.forget_gain();
-            states.iter_mut().for_each(BeamState::forget_gain);
+            group.keep_gains(0);
+            states.iter_mut().for_each(|state| state.keep_gains(0));
         }
     }
 

@@ -6,7 +6,7 @@ use covmap::{Change, CoverageMap};
 use covmap_sonar::Scan;
 use nalgebra::{Isometry2, Vector2};
 
-/// Farther apart than so many λ two looks share no errors.
+/// Looks that are more than this many λ apart share no errors.
 const FARTHEST: f64 = 3.0;
 
 /// The looks that were taken so far, and how much of another one would be new.
@@ -64,18 +64,20 @@ impl Looks {
     /// How much of each beam's reading at a pose would be new, in \[0, 1\].
     pub fn novelty(&self, model: &SensorModel, pose: &Isometry2<f64>) -> Vec<f64> {
         let sensors: Vec<_> = model.footprint().sensors().collect();
+        let ring = sensors.iter().map(|(at, _)| at.coords.norm()).fold(0.0, f64::max);
+        let farthest = self.repeats.reach() + 2.0 * ring;
         let mut novelty = vec![1.0; sensors.len()];
         for taken in &self.taken {
             let apart = (taken.translation.vector - pose.translation.vector).norm();
+            // A log has many looks, and few are near.
+            if apart > farthest {
+                continue;
+            }
             let turned = taken.rotation.rotation_to(&pose.rotation);
             let is_same_heading = turned.angle().abs() < 1e-9;
             if is_same_heading {
                 let left = self.repeats.left(apart);
                 novelty.iter_mut().for_each(|n| *n *= left);
-                continue;
-            }
-            let ring = sensors.iter().map(|(at, _)| at.coords.norm()).fold(0.0, f64::max);
-            if apart > FARTHEST * self.repeats.distance + 2.0 * ring {
                 continue;
             }
             for ((at, axis), novelty) in sensors.iter().zip(&mut novelty) {

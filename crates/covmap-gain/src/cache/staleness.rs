@@ -67,14 +67,9 @@ impl BeamState {
             CellChange::Reflection => {
                 (self.sight, self.reason, self.gain, self.bound) = (0, 0, 0, 0);
             }
-            CellChange::Posterior => (self.gain, self.bound) = (0, 0),
+            CellChange::Posterior => self.keep_gains(0),
             CellChange::Limit => (self.reason, self.gain) = (0, 0),
         }
-    }
-
-    /// Forgets gain and bound, whatever changed.
-    pub(super) fn forget_gain(&mut self) {
-        self.forget(CellChange::Posterior);
     }
 
     /// Forgets gain and bound of all but some view-points.
@@ -87,14 +82,9 @@ impl GroupState {
     fn forget(&mut self, change: CellChange) {
         match change {
             CellChange::Reflection => (self.sight, self.gain, self.bound) = (0, 0, 0),
-            CellChange::Posterior => (self.gain, self.bound) = (0, 0),
+            CellChange::Posterior => self.keep_gains(0),
             CellChange::Limit => (self.sight, self.gain) = (0, 0),
         }
-    }
-
-    /// Forgets gain and bound, whatever changed.
-    pub(super) fn forget_gain(&mut self) {
-        self.forget(CellChange::Posterior);
     }
 
     /// Forgets gain and bound of all but some view-points.

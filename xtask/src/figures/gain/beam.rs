@@ -2,7 +2,7 @@
 
 use super::moment::{Moment, Seen};
 use super::style::{
-    BLUE, GREY, GREY_INK, LIGHT, ORANGE, PALE, PURPLE, SKY, SMALL, TEXT, VERMILION, count, key,
+    BLUE, GREY, GREY_INK, LIGHT, ORANGE, PALE, PURPLE, SKY, SMALL, TEXT, VERMILION, count, keys,
     pale,
 };
 use covmap_gain::StencilCell;
@@ -143,16 +143,14 @@ pub(super) fn draw(moment: &Moment, seen: Seen) -> Drawing {
         drawing.text(&text, TEXT, at, TextAnchor::Middle, VERMILION);
     }
     draw_bars(&mut drawing, moment, seen, (&frame, low + 34.0), likeliest);
-    let mut x = LEFT;
-    for (color, meaning) in [
+    let meanings = [
         (Part::InFront.color(), "in front: says “free”"),
         (Part::AtEnd.color(), "at the end"),
         (Part::Behind.color(), "behind: says “covered”"),
         (LIGHT, "not covered by this outcome"),
         (pale(LIGHT), "beyond the horizon"),
-    ] {
-        x = key(&mut drawing, [x, low + 34.0 + BARS + 66.0], color, meaning);
-    }
+    ];
+    keys(&mut drawing, [LEFT, low + 34.0 + BARS + 66.0], &meanings);
     drawing
 }
 

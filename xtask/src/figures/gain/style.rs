@@ -56,3 +56,8 @@ pub(super) fn small(value: f64) -> String {
     // Nothing below the smallest number is told apart from 0.
     if value == 0.0 { "0".into() } else { format!("{mantissa:.1}e{exponent}") }
 }
+
+/// Writes what each colour means, one beside the other.
+pub(super) fn keys(drawing: &mut Drawing, [left, y]: [f64; 2], meanings: &[(Rgb, &str)]) {
+    meanings.iter().fold(left, |x, (color, meaning)| key(drawing, [x, y], *color, meaning));
+}

@@ -2,7 +2,7 @@
 
 use super::beam::{Part, part};
 use super::moment::{Moment, Seen};
-use super::style::{BLUE, GREY, GREY_INK, LIGHT, PALE, SMALL, TEXT, VERMILION, count, key, pale};
+use super::style::{BLUE, GREY, GREY_INK, LIGHT, PALE, SMALL, TEXT, VERMILION, count, keys, pale};
 use covmap_gain::NEGLIGIBLE;
 use covmap_io::{Drawing, Rgb, TextAnchor};
 
@@ -73,16 +73,14 @@ pub(super) fn draw(moment: &Moment, seen: Seen) -> Drawing {
     let at = [LEFT + 0.5 * MATRIX, top - 10.0];
     let text = format!("the beam’s {cells} cells, the nearest first →");
     drawing.text(&text, TEXT, at, TextAnchor::Middle, Rgb::INK);
-    let mut x = LEFT;
-    for (color, meaning) in [
+    let meanings = [
         (Part::InFront.color(), "in front: in S_q(i)"),
         (Part::AtEnd.color(), "at the end: evaluated"),
         (Part::Behind.color(), "behind: a polynomial of c_m"),
         (LIGHT, "not covered"),
         (pale(Part::InFront.color()), "pale: unlikely"),
-    ] {
-        x = key(&mut drawing, [x, top + height + 40.0 + SUMS + 58.0], color, meaning);
-    }
+    ];
+    keys(&mut drawing, [LEFT, top + height + 40.0 + SUMS + 58.0], &meanings);
     drawing
 }
 

@@ -1,0 +1,25 @@
+//! How much is measured, as it is typed.
+
+use clap::ValueEnum;
+use covmap_plan::Effort;
+
+/// How much is measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum EffortName {
+    /// The floor plan, with a third of the scans of thorough
+    Quick,
+    /// Half of them
+    Standard,
+    /// The best map
+    Thorough,
+}
+
+impl EffortName {
+    pub(crate) fn effort(self) -> Effort {
+        match self {
+            Self::Quick => Effort::Quick,
+            Self::Standard => Effort::Standard,
+            Self::Thorough => Effort::Thorough,
+        }
+    }
+}
