@@ -24,8 +24,13 @@ fn decisions(scenario: &Path, resolution: f64, strategy: Strategy, scans: usize)
             let mut planner = view.planner.clone();
             let table = planner.candidate_table(view.map, *from);
             // Who would measure in vain is passed over.
-            let promises =
-                |cell| view.map.grid().index(cell).is_some_and(|i| planner.gains().is_promising(i));
+            let least = 0.05 / (resolution * resolution);
+            let promises = |cell| {
+                view.map.grid().index(cell).is_some_and(|i| planner.gains().promise(i) >= least)
+            };
+            if decision.towards_ground {
+                return ControlFlow::Continue(());
+            }
             assert!(promises(decision.target));
             let score = |cell| table.iter().find(|r| r.cell == cell).map(|record| record.score);
             let promising = table.iter().filter(|r| promises(r.cell));

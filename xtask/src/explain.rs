@@ -54,6 +54,11 @@ fn facts(moment: &Moment) -> Vec<String> {
     if decision.candidates != candidates.len() {
         facts.push(format!("{} of the candidates lie in the window", decision.candidates));
     }
+    if decision.towards_ground {
+        facts.push(
+            "no scan is worth its while: this one looks at what keeps it off more ground".into(),
+        );
+    }
     if !decision.passage.is_empty() {
         facts.push(format!(
             "nothing is open in reach: it tries a passage of {} cells that look blocked",

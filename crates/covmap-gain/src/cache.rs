@@ -79,7 +79,10 @@ pub struct GainCache {
     arch: Arch,
     /// A gain was met that is above its bound.
     exceeded: bool,
-    /// What some reason to measure must be expected to gain if a view-point is to promise enough.
+    /// What the reasons to measure in a beam are expected to gain, of those that gain enough. Empty if
+    /// the evaluation does not tell the cells apart.
+    beam_promise: Vec<Lanes>,
+    /// What a cell must be expected to gain to count for a promise.
     least_change: f32,
 }
 
@@ -113,11 +116,13 @@ impl GainCache {
         let groups = grid.height() * groups_per_row(&grid);
         let group_beams = groups * stencil.beams.len();
         let beam = |beam| RasterBeam::new(beam, &belief, prediction.uniform_share);
+        let evaluator = Evaluator::new(model, &stencil, grid, &belief, (prediction.gain, upkeep));
+        let promises = if evaluator.tells_cells_apart() { group_beams } else { 0 };
         Ok(Self {
             grid,
             upkeep,
             beams: stencil.beams.iter().map(beam).collect(),
-            evaluator: Evaluator::new(model, &stencil, grid, &belief, (prediction.gain, upkeep)),
+            evaluator,
             onlookers: Onlookers::new(&stencil, grid),
             stencil,
             belief,
@@ -126,14 +131,15 @@ impl GainCache {
             states: vec![BeamState::default(); group_beams],
             in_sight: vec![[0; LANES]; group_beams],
             beam_gain: vec![[0.0; LANES]; group_beams],
+            beam_promise: vec![[0.0; LANES]; promises],
             arch: Registers::Avx512.or_narrower(),
             exceeded: false,
             least_change: 0.0,
         })
     }
 
-    /// The same, with what the entropy of a cell must be expected to fall by \[nats\] if a view-point
-    /// is to promise enough: see [`is_promising`](Self::is_promising).
+    /// The same, with what the entropy of a cell must be expected to fall by \[nats\] to count for a
+    /// [promise](Self::promise).
     #[must_use]
     pub fn with_least_change(self, least: f64) -> Self {
         Self { least_change: crate::numbers::to_f32(least), ..self }
@@ -142,8 +148,8 @@ impl GainCache {
     /// About how many bytes a cache takes at most while it is made and asked, with its copy of the
     /// map: an estimate, mostly too large, to be asked for before there is one.
     pub fn bytes(model: &SensorModel, grid: &Grid, upkeep: Upkeep) -> u64 {
-        // A state, what is in sight, and a gain.
-        const GROUP_BEAM: f64 = 12.0 + 32.0 + 64.0;
+        // A state, what is in sight, a gain and a promise.
+        const GROUP_BEAM: f64 = 12.0 + 32.0 + 64.0 + 64.0;
         // A state, mean gains, and marks.
         const GROUP: f64 = 8.0 + 128.0 + 14.0;
         // A stencil's cell with its weight, and as a raster beam's: capacities grow by doubling.
@@ -387,9 +393,11 @@ impl GainCache {
                 let is_bounded = bounded >> lane & 1 == 1;
                 self.exceeded |= is_bounded && gain > *kept + ROUNDING * (1.0 + kept.abs());
                 *kept = gain;
+                if let Some(promise) = self.beam_promise.get_mut(at) {
+                    promise[lane] = answer.promise[lane];
+                }
             }
             (state.gain, state.bound) = (state.gain | wanted, state.bound | wanted);
-            state.promising = state.promising & !wanted | answer.promising & wanted;
         }
     }
 }

@@ -32,8 +32,9 @@ pub(crate) struct AskedRow {
 pub(crate) struct BeamAnswer {
     /// E\[I\] \[nats\].
     pub(crate) gain: [f64; LANES],
-    /// Whether some cell that is a reason to measure is expected to gain enough.
-    pub(crate) promising: u16,
+    /// What the cells that are reasons to measure are expected to gain, of those that gain enough
+    /// \[nats\].
+    pub(crate) promise: Lanes,
 }
 
 /// The answer for each beam of an [`AskedRow`].

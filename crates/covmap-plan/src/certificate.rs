@@ -60,7 +60,13 @@ impl Planner {
     pub fn certificate(&mut self, map: &CoverageMap, from: Cell) -> Raster<CellStatus> {
         let mut in_sight = vec![InSight::Nowhere; self.grid.len()];
         let mut candidates = self.candidates(from);
-        self.leave_out_vain(map, &mut candidates.indices);
+        self.leave_out_vain(map, &mut candidates.indices, self.least_change);
+        if candidates.indices.is_empty()
+            && let Some((mut towards, least)) = self.candidates_towards_ground(map, from)
+        {
+            self.leave_out_vain(map, &mut towards.indices, Some(least));
+            candidates.indices = towards.indices;
+        }
         for view_point in candidates.costs.reached() {
             let is_candidate = candidates.indices.binary_search(&view_point).is_ok();
             let sight = if is_candidate { InSight::Candidate } else { InSight::Spent };
@@ -154,14 +160,16 @@ impl Planner {
         self.exploration.counted_scans(self.grid)
     }
 
-    /// Whether all that a robot in the cell `from` can reach is spent by one scan: it is shut in.
+    /// Whether all that a robot in the cell `from` can reach is nearer to one of these places than the
+    /// robot is wide: it is shut in.
     pub fn is_confined(&self, from: Cell) -> bool {
         let reached = self.traversable.steps().reached(self.grid.index(from));
         let reached: Vec<usize> = (0..self.grid.len()).filter(|i| reached[*i]).collect();
-        let spends_all = |at: &usize| {
-            let at = self.grid.cell(*at);
-            reached.iter().all(|i| self.grid.cell(*i) == at || self.measured.is_near(*i, at))
+        let most = self.traversable.most_within(2.0 * self.radius);
+        let center = |index: &usize| self.grid.center(self.grid.cell(*index));
+        let is_near_all = |at: &usize| {
+            reached.iter().all(|i| (center(i) - center(at)).norm() < 2.0 * self.radius)
         };
-        reached.len() <= self.measured.most_spent() && reached.iter().any(spends_all)
+        reached.len() <= most && reached.iter().any(is_near_all)
     }
 }

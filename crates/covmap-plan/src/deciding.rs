@@ -5,9 +5,10 @@
 //! because its bound is too low, while all that were evaluated keep theirs, stays passed over.
 
 use crate::decision::{Contest, REPORTED, Score};
+use crate::parameters::LeastChange;
 use crate::{CandidateRecord, Planner};
 use covmap::CoverageMap;
-use covmap_gain::{GAIN_TOLERANCE, ViewPoints, expected_changes};
+use covmap_gain::{BeamStencil, GAIN_TOLERANCE, ViewPoints, expected_changes};
 use rayon::prelude::*;
 
 /// So many candidates are evaluated first, and twice as many whenever that was not enough. To
@@ -15,20 +16,28 @@ use rayon::prelude::*;
 const FIRST: usize = 64;
 
 impl Planner {
-    /// Passes over candidates until the best ones hold what is expected to change. With that the
-    /// order of the strategy is kept: who is passed over would have been chosen, and measured in
-    /// vain.
-    pub(crate) fn fill_and_pass_over(&mut self, map: &CoverageMap, contest: &mut Contest) {
+    /// Passes over candidates until the best ones promise enough. With that the order of the strategy is
+    /// kept: who is passed over would have been chosen, and measured in vain.
+    pub(crate) fn fill_and_pass_over(
+        &mut self,
+        map: &CoverageMap,
+        contest: &mut Contest,
+        least: Option<LeastChange>,
+    ) {
         let weighs = self.parameters().strategy.uses_gain();
-        let Some(least) = self.parameters().least_change() else {
+        let Some(least) = least else {
             if weighs {
+                self.refresh_bounds(contest);
                 self.fill_deciding_gains(contest);
             }
             return;
         };
+        self.refresh_bounds(contest);
+        let by_bounds = self.in_vain(map, contest, least, 0);
+        by_bounds.into_iter().for_each(|place| contest.pass_over(place));
         loop {
             self.fill_deciding_gains(contest);
-            let vain = self.in_vain(map, contest, least);
+            let vain = self.in_vain(map, contest, least, REPORTED);
             if vain.is_empty() {
                 return;
             }
@@ -36,29 +45,38 @@ impl Planner {
         }
     }
 
-    /// The places of candidates that are evaluated and hold nothing that is expected to change.
-    fn in_vain(&self, map: &CoverageMap, contest: &Contest, least: f64) -> Vec<usize> {
-        let is_in_vain = |place: &usize| {
-            let cell = contest.records[*place].cell;
-            let index = self.grid.index(cell).filter(|index| self.gains.is_exact(*index));
-            index.is_some_and(|index| !self.promises(map, index, least))
-        };
+    /// The places of candidates of which is known that they do not promise enough; where the literal
+    /// equations must be asked, of so many of the best.
+    fn in_vain(
+        &self,
+        map: &CoverageMap,
+        contest: &Contest,
+        least: LeastChange,
+        asked: usize,
+    ) -> Vec<usize> {
+        let index = |place: usize| self.grid.index(contest.records[place].cell);
         if self.gains.tells_cells_apart() {
-            return contest.left().filter(is_in_vain).collect();
+            let is_in_vain = |i: usize| self.gains.promise(i) < least.scan;
+            return contest.left().filter(|place| index(*place).is_some_and(is_in_vain)).collect();
         }
-        // The literal equations are slow: some of the best.
+        let is_in_vain = |i: usize| self.gains.is_exact(i) && !self.promises(map, i, least);
         let mut places: Vec<usize> = contest.left().collect();
         let better = |a: &usize, b: &usize| {
             contest.records[*b].score.total_cmp(&contest.records[*a].score).then(a.cmp(b))
         };
         places.sort_by(better);
-        places.truncate(REPORTED);
-        places.into_par_iter().filter(is_in_vain).collect()
+        places.truncate(asked);
+        places.into_par_iter().filter(|place| index(*place).is_some_and(is_in_vain)).collect()
     }
 
     /// Leaves out the candidates that would measure in vain.
-    pub(crate) fn leave_out_vain(&mut self, map: &CoverageMap, candidates: &mut Vec<usize>) {
-        let Some(least) = self.parameters.least_change() else { return };
+    pub(crate) fn leave_out_vain(
+        &mut self,
+        map: &CoverageMap,
+        candidates: &mut Vec<usize>,
+        least: Option<LeastChange>,
+    ) {
+        let Some(least) = least else { return };
         let mut all = ViewPoints::new(&self.grid);
         candidates.iter().for_each(|index| all.insert(*index));
         self.gains.refresh_gains(&all);
@@ -66,23 +84,36 @@ impl Planner {
         *candidates = candidates.par_iter().copied().filter(promises).collect();
     }
 
-    /// Whether some cell that is a reason to go to a view-point, whose gain is up to date, is expected
-    /// to change by at `least` so much.
-    pub(crate) fn promises(&self, map: &CoverageMap, index: usize, least: f64) -> bool {
+    /// Whether a scan from a view-point, whose gain is up to date, is expected to tell enough about the
+    /// cells that are reasons to go there.
+    pub(crate) fn promises(&self, map: &CoverageMap, index: usize, least: LeastChange) -> bool {
         if self.gains.tells_cells_apart() {
-            return self.gains.is_promising(index);
+            return self.gains.promise(index) >= least.scan;
         }
         let (view_point, stencil) = (self.grid.cell(index), self.stencil());
         let prediction = self.prediction_at(view_point);
-        stencil.beams.iter().any(|beam| {
+        let of_beam = |beam: &BeamStencil| -> f64 {
             let changes = expected_changes(map, &self.model, stencil, beam, prediction, view_point);
-            beam.cells.iter().zip(changes).any(|(met, change)| {
+            let reasons = beam.cells.iter().zip(changes).filter(|(met, change)| {
                 let cell = self.grid.index(view_point.offset(met.dx, met.dy));
                 #[allow(clippy::cast_possible_truncation, reason = "limits are f32")]
                 let distance = met.cell_distance as f32;
-                change >= least && cell.is_some_and(|cell| self.is_reason(cell, distance))
-            })
-        })
+                *change >= least.cell && cell.is_some_and(|cell| self.is_reason(cell, distance))
+            });
+            reasons.map(|(_, change)| change).sum()
+        };
+        stencil.beams.iter().map(of_beam).sum::<f64>() >= least.scan
+    }
+
+    /// Bounds the gains of all candidates, where a strategy weighs gains. For the others gains tell only
+    /// who would measure in vain: those of the nearest are enough.
+    fn refresh_bounds(&mut self, contest: &Contest) {
+        let all = self.view_points(&contest.records);
+        if contest.score == Score::Closest {
+            self.gains.refresh_sight(&all);
+        } else {
+            self.gains.refresh_bounds(&all);
+        }
     }
 
     /// Fills in the scores of all records, with the gains of those that may have the largest gain,
@@ -90,12 +121,6 @@ impl Planner {
     /// gain. So whatever is close to the best by less than what the fast gains are off is evaluated.
     fn fill_deciding_gains(&mut self, contest: &mut Contest) {
         let (all, score) = (self.view_points(&contest.records), contest.score);
-        if score == Score::Closest {
-            // Gains tell only who would measure in vain: those of the nearest are enough.
-            self.gains.refresh_sight(&all);
-        } else {
-            self.gains.refresh_bounds(&all);
-        }
         self.gains.take_exceeded();
         let largest = |records: &[CandidateRecord]| {
             GAIN_TOLERANCE * records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max)

@@ -35,6 +35,8 @@ pub struct Decision {
     /// The cells of the passage that the robot tries, though they look blocked: it can reach
     /// no candidate but beyond them. Mostly none.
     pub passage: Vec<Cell>,
+    /// No scan is worth its while: this one looks at what keeps the robot off more ground.
+    pub towards_ground: bool,
     /// The number of candidates, |L(c)|.
     pub candidates: usize,
     /// How many of them have E\[I\] < 0, of those that were evaluated: of most candidates an upper

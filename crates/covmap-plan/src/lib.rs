@@ -23,6 +23,7 @@ mod certificate;
 mod deciding;
 mod decision;
 mod exploration;
+mod ground;
 mod measured;
 mod memory;
 mod parameters;
@@ -32,6 +33,7 @@ mod strategy;
 mod travel_cost;
 mod traversable;
 mod window;
+mod windowed;
 
 pub use certificate::{Promise, Reach};
 pub use decision::{CandidateRecord, Decision};

@@ -10,8 +10,9 @@ const ROUNDING: f64 = 1e-9;
 /// Which view-points are spent: too near to where a scan was taken to tell anything new.
 ///
 /// Choice: readings from one place share their errors (the same wall that does not answer,
-/// the same width of the cone), so that repeating them adds confidence and no knowledge.
-/// The paper has no such rule: spacing 0 spends nothing.
+/// the same width of the cone), so that repeating them adds confidence and no knowledge. Where the
+/// model knows of that ([`Repeats`](covmap_model::Repeats)) the gain says it, and spacing 0 spends
+/// nothing, as in the paper.
 #[derive(Debug, Clone)]
 pub(crate) struct Measured {
     grid: Grid,
@@ -38,13 +39,6 @@ impl Measured {
         let center = |cell| self.grid.center(cell);
         let distance = (center(self.grid.cell(index)) - center(view_point)).norm();
         distance <= self.spacing - ROUNDING
-    }
-
-    /// One scan spends at most so many view-points.
-    pub(crate) fn most_spent(&self) -> usize {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-        let side = (2.0 * self.spacing / self.grid.resolution()).clamp(0.0, 1e4) as usize + 1;
-        side * side
     }
 
     pub(crate) fn is_spent(&self, index: usize) -> bool {

@@ -28,42 +28,60 @@ pub enum StallRule {
     Literal,
 }
 
-/// When a cell that is not resolved is a reason to go to a view-point.
+/// When cells that are not resolved are a reason to go to a view-point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Reason {
-    /// When it is in sight from there: the paper counts, for each cell, the measurements that did
+    /// When one is in sight from there: the paper counts, for each cell, the measurements that did
     /// not change it, after they were made.
     InSight,
-    /// When it is in sight, and its entropy is expected to fall by one of the beams:
-    /// Σ_d p(d | c) · I(h_i | d) is at least so much \[nats\]. "Unable to reduce the entropy of a
-    /// cell", foreseen instead of waited for.
-    ExpectedChange(f64),
+    /// When one is in sight whose entropy is expected to fall, and there are enough of them. "Unable to
+    /// reduce the entropy of a cell", foreseen instead of waited for.
+    ExpectedChange {
+        /// What a cell's entropy must be expected to fall by to count, δ:
+        /// Σ_d p(d | c) · I(h_i | d) \[nats\].
+        cell: f64,
+        /// What all of them together must be expected to fall by if a scan is to be worth its while,
+        /// times the area of a cell, which makes it the same in coarse grids and in fine ones:
+        /// r² · Σ_i Σ_d p(d | c) · I(h_i | d) \[nats · m²\].
+        scan: f64,
+    },
 }
 
-/// How much is measured before nothing is worth it: the least expected change and how far scans keep
-/// apart, together. ε stays: what is resolved, and free in the map for other software, is as sure with
-/// any effort. (From .6 to 1.6 nats ε changed the scans in the office by no more than 5 %.)
+/// How much is measured before nothing is worth it: how sure of a cell is sure enough, and what a scan
+/// must be expected to tell, together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Effort {
-    /// The floor plan, with a third of the scans of `Thorough`.
+    /// The floor plan, with half of the scans of `Standard`.
     Quick,
-    /// The default: half of the scans.
+    /// The default.
     Standard,
     /// The best map.
     Thorough,
 }
 
 impl Effort {
-    /// The least expected change \[nats\], and the spacing of scans \[m\]. What they buy stands in
+    /// ε \[nats\], and what a scan must be expected to tell \[nats · m²\]. What they buy stands in
     /// docs/results.md.
     fn demands(self) -> (f64, f64) {
         match self {
-            Self::Quick => (0.2, 0.65),
-            Self::Standard => (0.1, 0.5),
-            Self::Thorough => (0.02, 0.35),
+            Self::Quick => (1.2, 0.1),
+            Self::Standard => (0.6, 0.05),
+            Self::Thorough => (0.6, 0.02),
         }
     }
+}
+
+/// With any effort, what a cell's entropy must be expected to fall by to count \[nats\].
+const LEAST_OF_CELL: f64 = 0.02;
+
+/// What a scan is expected to change if it is worth its while \[nats\].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct LeastChange {
+    /// About one cell, if it is to count.
+    pub(crate) cell: f64,
+    /// About all cells that count.
+    pub(crate) scan: f64,
 }
 
 /// Which cells must be explored.
@@ -104,8 +122,9 @@ pub struct PlannerParameters {
     pub stall_limit: u32,
     /// When a cell is given up.
     pub stall_rule: StallRule,
-    /// A view-point nearer than this to where a scan was taken tells nothing new \[m\]; 0 is
-    /// the paper. Counting strategies, which count just that, do not ask.
+    /// A view-point nearer than this to where a scan was taken is no candidate \[m\]: for models that
+    /// take readings from one place for independent. 0 asks for no distance. Counting strategies, which
+    /// count just that, do not ask.
     pub scan_spacing: f64,
     /// A practical cap on the scans counted for one cell; reported whenever it fires.
     pub max_counted_scans: u32,
@@ -157,19 +176,18 @@ impl PlannerError {
 }
 
 impl PlannerParameters {
-    /// The defaults: IG_CL(.1), ε = .6, walls are targets, [`Effort::Standard`], the paper's .001 and
-    /// five.
+    /// The defaults: IG_CL(.1), walls are targets, [`Effort::Standard`], the paper's .001 and five.
     pub fn standard() -> Self {
-        let (least_change, scan_spacing) = Effort::Standard.demands();
+        let (entropy_threshold, scan) = Effort::Standard.demands();
         Self {
             strategy: Strategy::IgCl { alpha: 0.1 },
             gain: InformationGain::Eq14,
-            reason: Reason::ExpectedChange(least_change),
-            entropy_threshold: 0.6,
+            reason: Reason::ExpectedChange { cell: LEAST_OF_CELL, scan },
+            entropy_threshold,
             min_entropy_change: 0.001,
             stall_limit: 5,
             stall_rule: StallRule::Banded { first: 1.0, closest: 0.5 },
-            scan_spacing,
+            scan_spacing: 0.0,
             max_counted_scans: 520,
             scope: Scope::Observable,
             traversable_coverage: 0.2,
@@ -183,8 +201,9 @@ impl PlannerParameters {
     /// The same with another effort.
     #[must_use]
     pub fn with_effort(self, effort: Effort) -> Self {
-        let (least_change, scan_spacing) = effort.demands();
-        Self { reason: Reason::ExpectedChange(least_change), scan_spacing, ..self }
+        let (entropy_threshold, scan) = effort.demands();
+        let reason = Reason::ExpectedChange { cell: LEAST_OF_CELL, scan };
+        Self { reason, entropy_threshold, ..self }
     }
 
     /// Checks every parameter.
@@ -198,8 +217,9 @@ impl PlannerParameters {
             within("stall_rule.first", first, closest, 100.0)?;
             within("stall_rule.closest", closest, 1e-2, 100.0)?;
         }
-        if let Reason::ExpectedChange(least) = self.reason {
-            within("reason.ExpectedChange", least, 1e-6, 5.0)?;
+        if let Reason::ExpectedChange { cell, scan } = self.reason {
+            within("reason.cell", cell, 1e-6, 5.0)?;
+            within("reason.scan", scan, 0.0, 100.0)?;
         }
         within("scan_spacing", self.scan_spacing, 0.0, 100.0)?;
         within("max_counted_scans", f64::from(self.max_counted_scans), 1.0, 1e6)?;
@@ -217,15 +237,19 @@ impl PlannerParameters {
 
     /// Strategies that weigh gains keep them; the others report some few.
     pub(crate) fn upkeep(&self) -> Upkeep {
-        let keeps = self.strategy.uses_gain() || self.least_change().is_some();
+        let foresees = matches!(self.reason, Reason::ExpectedChange { .. });
+        let keeps = self.strategy.uses_gain() || foresees && self.strategy.counting().is_none();
         if keeps { Upkeep::Kept } else { Upkeep::OnDemand }
     }
 
-    /// What the entropy of a cell must be expected to fall by; `None` if that does not matter, as for
+    /// What is expected at least, in cells of this side \[m\]; `None` if that does not matter, as for
     /// strategies that count.
-    pub(crate) fn least_change(&self) -> Option<f64> {
+    pub(crate) fn least_change(&self, resolution: f64) -> Option<LeastChange> {
         match self.reason {
-            Reason::ExpectedChange(least) if self.strategy.counting().is_none() => Some(least),
+            Reason::ExpectedChange { cell, scan } if self.strategy.counting().is_none() => {
+                let scan = (scan / (resolution * resolution)).max(cell);
+                Some(LeastChange { cell, scan })
+            }
             _ => None,
         }
     }

@@ -7,7 +7,7 @@ use covmap_gain::ViewPoints;
 
 /// A passage is worth trying if beyond it the robot could stand on so many times the area of
 /// its body, about a square metre: pockets behind bumps are not.
-const ROOM: usize = 4;
+pub(crate) const ROOM: usize = 4;
 
 impl Planner {
     /// What L(c) would be beyond the nearest passage that looks blocked but was not tried,
@@ -29,7 +29,7 @@ impl Planner {
         self.gains.refresh_sight(&wanted);
         let may_be = |i: &usize| !self.measured.is_spent(*i) && self.gains.has_reason(*i);
         let mut offered = cut_off.into_iter().filter(may_be).collect();
-        self.leave_out_vain(map, &mut offered);
+        self.leave_out_vain(map, &mut offered, self.least_change);
         let is_candidate = |i: usize| offered.binary_search(&i).is_ok();
         let is_cut_off = |i: usize| self.traversable.at(i) && here.cost(i).is_none();
         let least = ROOM * self.traversable.body_cells();

@@ -3,6 +3,7 @@
 use crate::decision::{Contest, REPORTED, Score};
 use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
+use crate::parameters::LeastChange;
 use crate::traversable::Traversable;
 use crate::window::Window;
 use crate::{
@@ -37,13 +38,15 @@ pub struct Planner {
     pub(crate) parameters: PlannerParameters,
     pub(crate) model: SensorModel,
     pub(crate) grid: Grid,
-    radius: f64,
+    pub(crate) radius: f64,
     pub(crate) traversable: Traversable,
     pub(crate) exploration: Exploration,
     pub(crate) gains: GainCache,
     pub(crate) measured: Measured,
     /// How much of a reading from each view-point would be new.
     novelty: Vec<f64>,
+    /// What a scan must be expected to change, if it is asked.
+    pub(crate) least_change: Option<LeastChange>,
     pub(crate) window: Option<Window>,
     /// The chosen view-point, and what was in sight of it when it was chosen.
     target: Option<(Cell, Vec<(usize, f32)>)>,
@@ -77,9 +80,10 @@ impl Planner {
         PlannerError::within("radius", radius, 0.0, 1e3)?;
         PlannerError::within("heading", heading, -1e9, 1e9)?;
         let grid = *outside.grid();
+        let least_change = parameters.least_change(grid.resolution());
         let (prediction, upkeep) = (parameters.range_prediction(), parameters.upkeep());
         let gains = GainCache::new(model, heading, grid, prediction, upkeep)?
-            .with_least_change(parameters.least_change().unwrap_or(0.0));
+            .with_least_change(least_change.map_or(0.0, |least| least.cell));
         let window = match parameters.strategy {
             Strategy::IgWin { radius } => Some(Window::new(grid, radius)),
             _ => None,
@@ -97,6 +101,7 @@ impl Planner {
             gains,
             measured: Measured::new(grid, scan_spacing),
             novelty: vec![1.0; grid.len()],
+            least_change,
             window,
             target: None,
         };
@@ -221,7 +226,7 @@ impl Planner {
     }
 
     /// Sets up to which distance a cell is a reason to measure.
-    fn update_limit(&mut self, map: &CoverageMap, index: usize) {
+    pub(crate) fn update_limit(&mut self, map: &CoverageMap, index: usize) {
         let cell = self.grid.cell(index);
         let known = map.is_known(cell);
         let in_scope = match self.parameters.scope {
@@ -329,12 +334,18 @@ impl Planner {
     }
 
     fn choose_here(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
-        let candidates = self.windowed_candidates(map, from);
-        let decision = candidates.and_then(|candidates| self.choose_among(map, from, &candidates));
-        decision.or_else(|| {
-            let beyond = self.candidates_beyond_a_passage(map, from)?;
-            self.choose_among(map, from, &beyond)
-        })
+        let (candidates, least) = (self.windowed_candidates(map, from), self.least_change);
+        candidates
+            .and_then(|candidates| self.choose_among(map, from, &candidates, least))
+            .or_else(|| {
+                let (towards, least) = self.candidates_towards_ground(map, from)?;
+                let decision = self.choose_among(map, from, &towards, Some(least))?;
+                Some(Decision { towards_ground: true, ..decision })
+            })
+            .or_else(|| {
+                let beyond = self.candidates_beyond_a_passage(map, from)?;
+                self.choose_among(map, from, &beyond, least)
+            })
     }
 
     /// Chooses one of some candidates; `None` if all of them would measure in vain.
@@ -343,10 +354,11 @@ impl Planner {
         map: &CoverageMap,
         from: Cell,
         candidates: &Candidates,
+        least: Option<LeastChange>,
     ) -> Option<Decision> {
         let with_gain = self.parameters.strategy.uses_gain();
         let mut contest = Contest::new(self.records(candidates), self.score());
-        self.fill_and_pass_over(map, &mut contest);
+        self.fill_and_pass_over(map, &mut contest, least);
         let decided_by_oracle = if with_gain { self.decide_ties(map, &mut contest) } else { 0 };
         let target = contest.records[contest.best()?].cell;
         let records: Vec<_> = contest.left().map(|place| contest.records[place]).collect();
@@ -363,6 +375,7 @@ impl Planner {
             target,
             path,
             passage,
+            towards_ground: false,
             candidates,
             negative_gains,
             decided_by_oracle,
@@ -415,68 +428,6 @@ impl Planner {
         });
         contest.apply();
         contenders
-    }
-
-    /// The candidates; for IG_WIN those inside the window, which is opened and closed here.
-    fn windowed_candidates(&mut self, map: &CoverageMap, from: Cell) -> Option<Candidates> {
-        if self.window.as_ref().is_some_and(|w| w.center().is_none()) {
-            self.open_window(from);
-        }
-        loop {
-            let mut candidates = self.candidates(from);
-            if self.window.is_some() {
-                self.leave_out_vain(map, &mut candidates.indices);
-            }
-            let Some(window) = &mut self.window else {
-                return (!candidates.indices.is_empty()).then_some(candidates);
-            };
-            if candidates.indices.is_empty() {
-                let reopened = window.reopen_all();
-                if reopened.is_empty() {
-                    return None;
-                }
-                reopened.into_iter().for_each(|index| self.update_limit(map, index));
-                continue;
-            }
-            let inside: Vec<usize> =
-                candidates.indices.iter().copied().filter(|i| self.window_offers(*i)).collect();
-            if !inside.is_empty() {
-                candidates.indices = inside;
-                return Some(candidates);
-            }
-            self.close_window(map);
-            let mut left = self.candidates(from);
-            self.leave_out_vain(map, &mut left.indices);
-            let nearest = left.costs.nearest(&left.indices);
-            if let Some(nearest) = nearest {
-                self.open_window(self.grid.cell(nearest));
-                if !left.indices.iter().any(|i| self.window_offers(*i)) {
-                    // All that the nearest candidate sees lies outside of its window.
-                    left.indices = vec![nearest];
-                    return Some(left);
-                }
-            }
-        }
-    }
-
-    fn open_window(&mut self, center: Cell) {
-        if let Some(window) = &mut self.window {
-            window.open(center);
-        }
-    }
-
-    fn close_window(&mut self, map: &CoverageMap) {
-        let closed = self.window.as_mut().map_or_else(Vec::new, Window::close);
-        closed.into_iter().for_each(|index| self.update_limit(map, index));
-    }
-
-    /// Whether a candidate lies in the window and holds an open cell of it in sight.
-    fn window_offers(&self, candidate: usize) -> bool {
-        let Some(window) = &self.window else { return true };
-        let is_open = |&(index, distance): &(usize, f32)| {
-            self.is_reason(index, distance) && window.holds(index)
-        };
-        window.holds(candidate) && self.gains.sees(candidate, is_open)
     }
 
     /// The cells around a view-point, as the planner's beams see them.

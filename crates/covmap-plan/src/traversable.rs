@@ -82,7 +82,7 @@ impl Traversable {
     }
 
     fn seems_open(&self, index: usize) -> bool {
-        (self.free[index] || self.under_body[index]) && self.blockers[index] == 0
+        self.is_free(index) && self.blockers[index] == 0
     }
 
     /// The steps that the robot can take.
@@ -103,6 +103,33 @@ impl Traversable {
             set(self.barred[index]).for_each(|step| steps.close(index, step));
         }
         steps
+    }
+
+    /// The same if some more cells were free.
+    pub(crate) fn with_free(&self, is_free: impl Fn(usize) -> bool) -> Self {
+        let mut hoped = self.clone();
+        (0..self.free.len())
+            .filter(|index| is_free(*index))
+            .for_each(|index| hoped.update(index, Some(true), |_| ()));
+        hoped
+    }
+
+    /// Whether the robot may drive over a cell, by what is known of it or because its body was there.
+    pub(crate) fn is_free(&self, index: usize) -> bool {
+        self.free[index] || self.under_body[index]
+    }
+
+    /// The cells whose centres are under the body at a view-point.
+    pub(crate) fn under_body_at(&self, index: usize) -> impl Iterator<Item = usize> {
+        let at = self.grid.cell(index);
+        self.disc.iter().filter_map(move |(dx, dy)| self.grid.index(at.offset(*dx, *dy)))
+    }
+
+    /// At most so many cells have their centres nearer than this to one place \[m\].
+    pub(crate) fn most_within(&self, distance: f64) -> usize {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+        let side = (2.0 * distance / self.grid.resolution()).clamp(0.0, 1e4) as usize + 1;
+        side * side
     }
 
     /// How many cells' centres are under the body.

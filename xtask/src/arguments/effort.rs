@@ -6,9 +6,9 @@ use covmap_plan::Effort;
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum EffortName {
-    /// The floor plan, with a third of the scans of thorough
+    /// The floor plan, with half of the scans of standard
     Quick,
-    /// Half of them
+    /// The default
     Standard,
     /// The best map
     Thorough,

@@ -66,7 +66,7 @@ fn traces_that_lie_are_refused() {
     refuse("", "the trace is empty");
     refuse("{}\n", "trace.jsonl:1:");
     refuse("[1, 2\n", "trace.jsonl:1:");
-    refuse(&instead("\"covmap_trace\":3", "\"covmap_trace\":99"), "version 99");
+    refuse(&instead("\"covmap_trace\":4", "\"covmap_trace\":99"), "version 99");
     let width = "\"resolution\":0.2,\"width\":";
     refuse(&number_after(&good, width, "999999999"), "20000000 cells");
     refuse(&number_after(&good, width, "1"), "trace.jsonl");

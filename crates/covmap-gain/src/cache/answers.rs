@@ -2,6 +2,7 @@
 
 use super::GainCache;
 use crate::belief::{PAD, padded};
+use crate::numbers::as_f64;
 use crate::view_points::group_and_lane;
 use crate::{MemoryLayout, Stencil, ViewPoints};
 use covmap::lanes::LANES;
@@ -73,21 +74,31 @@ impl GainCache {
         self.groups[group].has_reason >> lane & 1 == 1
     }
 
-    /// Whether some cell that is a reason to measure, no farther away than its limit, is expected to
-    /// gain at least so much by one of the beams from a view-point:
+    /// What a scan from a view-point is expected to tell about the cells that are reasons to measure,
+    /// no farther away than their limits \[nats\]: over all beams and those cells i of each whose
+    /// entropy is expected to fall by the least change or more,
     ///
     /// ```text
-    /// Σ_d p(d | c) · I(h_i | d) ≥ least change
+    /// Σ_i Σ_d p(d | c) · I(h_i | d)
     /// ```
     ///
-    /// It is up to date where the gain [is exact](Self::is_exact). With the product of Eq. (9) it is
-    /// always true: its evaluation does not tell the cells apart.
-    pub fn is_promising(&self, view_point: usize) -> bool {
+    /// It is this where the gain [is exact](Self::is_exact), and an upper bound where there is a bound
+    /// of the gain. With the product of Eq. (9) it is infinite: its evaluation does not tell the cells
+    /// apart.
+    pub fn promise(&self, view_point: usize) -> f64 {
         let (group, lane) = group_and_lane(self.grid.width(), view_point);
-        self.groups[group].promising >> lane & 1 == 1
+        let (state, count) = (&self.groups[group], self.beams.len());
+        match self.beam_promise.get(group * count..(group + 1) * count) {
+            Some(beams) if state.gain >> lane & 1 == 1 => {
+                beams.iter().map(|beam| f64::from(beam[lane])).sum()
+            }
+            // The ceiling of a cell is never negative.
+            Some(_) if state.bound >> lane & 1 == 1 => as_f64(count) * self.mean_gain[group][lane],
+            _ => f64::INFINITY,
+        }
     }
 
-    /// Whether [`is_promising`](Self::is_promising) says something.
+    /// Whether [`promise`](Self::promise) says something.
     pub fn tells_cells_apart(&self) -> bool {
         self.evaluator.tells_cells_apart()
     }

@@ -146,12 +146,10 @@ impl WithSimd for RefreshBounds<'_> {
     }
 }
 
-/// For which view-points of a group the gains of all beams are up to date, and the bounds; and which
-/// promise enough.
+/// For which view-points of a group the gains of all beams are up to date, and the bounds.
 pub(super) fn up_to_date(group: &mut GroupState, states: &[BeamState]) {
     group.gain = states.iter().fold(u16::MAX, |all, state| all & state.gain);
     group.bound = states.iter().fold(u16::MAX, |all, state| all & state.bound);
-    group.promising = states.iter().fold(0, |any, state| any | state.promising);
 }
 
 /// The average over the beams, of each view-point of a group.

@@ -39,8 +39,6 @@ pub(super) struct BeamState {
     pub(super) bound: u16,
     /// There is a reason to measure in sight.
     pub(super) has_reason: u16,
-    /// Some reason to measure is expected to gain enough, where E\[I\] is up to date.
-    pub(super) promising: u16,
     /// The values depend on the first so many cells of the beam.
     pub(super) horizon: u16,
 }
@@ -56,8 +54,6 @@ pub(super) struct GroupState {
     pub(super) bound: u16,
     /// There is a reason to measure in sight of some beam.
     pub(super) has_reason: u16,
-    /// Some reason to measure is expected to gain enough by some beam.
-    pub(super) promising: u16,
 }
 
 impl BeamState {

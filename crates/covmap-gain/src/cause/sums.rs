@@ -36,7 +36,7 @@ impl WithSimd for GainsOfRow<'_> {
             group.sum::<true>(asked.beam, (outcomes, probabilities), &mut fronts, &mut cells);
             answers.push(BeamAnswer {
                 gain: cells.total().map(f64::from),
-                promising: group.promising(asked.beam, &cells, least),
+                promise: group.promise(asked.beam, &cells, least),
             });
         }
         answers
@@ -177,21 +177,20 @@ impl GroupSum<'_> {
         }
     }
 
-    /// From which view-points some cell that is a reason to measure is expected to gain at `least`
+    /// What the cells that are reasons to measure are expected to gain, of those that gain at `least`
     /// so much.
     #[inline(always)]
-    fn promising(&self, beam: usize, gains: &EachCell, least: f32) -> u16 {
+    fn promise(&self, beam: usize, gains: &EachCell, least: f32) -> Lanes {
         let (limits, here) = (self.belief.limits(), self.here());
-        let mut most = [f32::NEG_INFINITY; LANES];
+        let mut promise = [0.0; LANES];
         for (cell, gain) in self.cause.beams[beam].cells.iter().zip(&gains.0) {
             let limit = at(limits, here, cell);
             for lane in 0..LANES {
-                let is_more = gain[lane] > most[lane] && cell.distance <= limit[lane];
-                most[lane] = if is_more { gain[lane] } else { most[lane] };
+                let counts = gain[lane] >= least && cell.distance <= limit[lane];
+                promise[lane] += if counts { gain[lane] } else { 0.0 };
             }
         }
-        let bit = |(lane, most): (usize, &f32)| u16::from(*most >= least) << lane;
-        most.iter().enumerate().map(bit).fold(0, |bits, bit| bits | bit)
+        promise
     }
 
     /// The first view-point in the bordered rasters.

@@ -48,7 +48,8 @@ impl<'a> SweptRow<'a> {
 
     pub(super) fn gains(self) -> RowGains {
         // What a cell gains by all outcomes together stands nowhere: any may gain enough.
-        let answer = |beam: SweptBeam| BeamAnswer { gain: beam.gain, promising: u16::MAX };
+        let answer =
+            |beam: SweptBeam| BeamAnswer { gain: beam.gain, promise: [f32::INFINITY; LANES] };
         self.beams.into_iter().map(answer).collect()
     }
 }

@@ -1,0 +1,79 @@
+//! Ground that the robot may yet win: no run ends before it looked at what keeps it off.
+//!
+//! What a scan tells is weighed by the entropy of cells alone; that behind some of them a whole room
+//! may lie, of which nothing is in sight, does not count. So where no scan is worth its while any
+//! longer, the robot asks whether it could stand on more ground if cells that may be free were free, and
+//! measures those as long as it learns anything about them.
+
+use crate::Planner;
+use crate::parameters::LeastChange;
+use crate::passage::{ROOM, regions};
+use crate::planner::Candidates;
+use covmap::{Cell, CoverageMap, bin_coverage};
+use covmap_gain::ViewPoints;
+
+/// A cell may be free if it is with at least this probability. (Of one that nothing is known of it is .27,
+/// with 11 bins.)
+const MAY_BE_FREE: f64 = 0.2;
+
+/// What the entropy of a cell that keeps the robot off must be expected to fall by \[nats\].
+const DOUBT: f64 = 0.1;
+
+impl Planner {
+    /// For each cell that keeps the robot in the cell `from` off more ground the candidate that is
+    /// expected to change it most, if that is enough, and what a scan must promise then: as much as one
+    /// cell that counts. `None` if there is no such ground, or if it is not asked what is expected to
+    /// change.
+    pub(crate) fn candidates_towards_ground(
+        &mut self,
+        map: &CoverageMap,
+        from: Cell,
+    ) -> Option<(Candidates, LeastChange)> {
+        let LeastChange { cell: least, .. } = self.least_change?;
+        let keeps_off = self.what_keeps_off_ground(map, from)?;
+        let mut candidates = self.candidates(from);
+        let is_wanted =
+            |&(index, distance): &(usize, f32)| keeps_off[index] && self.is_reason(index, distance);
+        let mut wanted = ViewPoints::new(&self.grid);
+        let sees = candidates.indices.iter().filter(|index| self.gains.sees(**index, is_wanted));
+        sees.for_each(|index| wanted.insert(*index));
+        let largest = self.gains.largest_changes(&wanted);
+        let of_cell = largest.into_iter().zip(&keeps_off).filter(|(_, keeps_off)| **keeps_off);
+        let enough =
+            of_cell.filter_map(|(largest, _)| largest.filter(|(change, _)| *change >= DOUBT));
+        candidates.indices = enough.map(|(_, from)| from).collect();
+        candidates.indices.sort_unstable();
+        candidates.indices.dedup();
+        let least = LeastChange { cell: least, scan: least };
+        (!candidates.indices.is_empty()).then_some((candidates, least))
+    }
+
+    /// Which cells keep the robot off ground that it could stand on if they were free, as they may be;
+    /// `None` if there is no such ground of about a square metre beside what it can reach.
+    fn what_keeps_off_ground(&self, map: &CoverageMap, from: Cell) -> Option<Vec<bool>> {
+        let reached = self.traversable.steps().reached(self.grid.index(from));
+        let may_be_free: Vec<bool> = self.grid.cells().map(|c| self.may_be_free(map, c)).collect();
+        let hoped = self.traversable.with_free(|index| may_be_free[index]);
+        let steps = hoped.steps();
+        let is_new = |i: usize| hoped.at(i) && !reached[i] && !self.exploration.is_outside(i);
+        let is_next_to_reached = |i: usize| steps.neighbours(i).any(|beside| reached[beside]);
+        let least = ROOM * self.traversable.body_cells();
+        let ground = regions(&steps, least, is_new, is_next_to_reached);
+        let mut keeps_off = vec![false; self.grid.len()];
+        for index in (0..self.grid.len()).filter(|index| ground[*index]) {
+            for under_body in self.traversable.under_body_at(index) {
+                keeps_off[under_body] |= !self.traversable.is_free(under_body);
+            }
+        }
+        keeps_off.contains(&true).then_some(keeps_off)
+    }
+
+    /// Whether a cell may be one that the robot can drive over.
+    fn may_be_free(&self, map: &CoverageMap, cell: Cell) -> bool {
+        let histogram = map.histogram(cell);
+        let most = self.parameters().traversable_coverage + 1e-9;
+        let probabilities = histogram.probabilities().iter().enumerate();
+        let free = probabilities.filter(|(bin, _)| bin_coverage(*bin, map.bins()) <= most);
+        free.map(|(_, p)| p).sum::<f64>() >= MAY_BE_FREE
+    }
+}
