@@ -4,7 +4,7 @@ use crate::{files, root};
 use covmap_explore::{Config, Event, Limits, Mission, SimulatedRobot, explore};
 use covmap_gain::GAIN_TOLERANCE;
 use covmap_io::read_ron;
-use covmap_plan::Strategy;
+use covmap_plan::{Reason, Strategy};
 use covmap_world::{Scenario, Surface, World};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -24,7 +24,8 @@ fn decisions(scenario: &Path, resolution: f64, strategy: Strategy, scans: usize)
             let mut planner = view.planner.clone();
             let table = planner.candidate_table(view.map, *from);
             // Who would measure in vain is passed over.
-            let least = 0.05 / (resolution * resolution);
+            let Reason::ExpectedChange { scan, .. } = config.planner.reason else { panic!() };
+            let least = scan / (resolution * resolution);
             let promises = |cell| {
                 view.map.grid().index(cell).is_some_and(|i| planner.gains().promise(i) >= least)
             };

@@ -22,11 +22,16 @@ impl ViewPoints {
         Self { width: grid.width(), bits: vec![0; grid.height() * groups_per_row(grid)] }
     }
 
+    /// Some view-points, by their row-major indices.
+    pub fn of(grid: &Grid, indices: impl IntoIterator<Item = usize>) -> Self {
+        let mut set = Self::new(grid);
+        indices.into_iter().for_each(|index| set.insert(index));
+        set
+    }
+
     /// One view-point, by its row-major index.
     pub fn one(grid: &Grid, index: usize) -> Self {
-        let mut set = Self::new(grid);
-        set.insert(index);
-        set
+        Self::of(grid, [index])
     }
 
     /// Adds a view-point by its row-major index.

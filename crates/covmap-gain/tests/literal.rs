@@ -69,9 +69,7 @@ impl Setting {
     }
 
     fn all(&self) -> ViewPoints {
-        let mut all = ViewPoints::new(self.map.grid());
-        (0..self.map.grid().len()).for_each(|index| all.insert(index));
-        all
+        ViewPoints::of(self.map.grid(), 0..self.map.grid().len())
     }
 
     /// All gains as they are cached.
@@ -276,6 +274,8 @@ proptest! {
         let grid = *s.map.grid();
         let limit = |index: usize| [0.0, 0.6, 3.0][index % 3];
         (0..grid.len()).for_each(|index| s.cache.set_limit(index, limit(index)));
+        s.cache.refresh_bounds(&s.all());
+        let bounds: Vec<f64> = (0..grid.len()).map(|index| s.cache.promise(index)).collect();
         s.gains();
         let mut largest = vec![f64::NEG_INFINITY; grid.len()];
         let sampled: Vec<usize> = (0..grid.len()).step_by(SAMPLED).collect();
@@ -296,9 +296,9 @@ proptest! {
             }
             let found = s.cache.promise(index);
             prop_assert!(doubtful || (found - promise).abs() < 1e-3, "{found} {promise}");
+            prop_assert!(found <= bounds[index] + 1e-3, "{found} {}", bounds[index]);
         }
-        let mut asked = ViewPoints::new(&grid);
-        sampled.iter().for_each(|index| asked.insert(*index));
+        let asked = ViewPoints::of(&grid, sampled.iter().copied());
         for (found, expected) in s.cache.largest_changes(&asked).iter().zip(&largest) {
             let found = found.map_or(f64::NEG_INFINITY, |(change, _)| change);
             prop_assert!(found == *expected || (found - expected).abs() < 1e-4, "{found} {expected}");

@@ -42,9 +42,8 @@ impl Planner {
     /// # Panics
     /// If the robot's cell lies outside of the grid.
     pub fn promises_of(&mut self, from: Cell) -> Raster<Option<Promise>> {
-        let mut reached = ViewPoints::new(&self.grid);
         let costs = travel_costs(self.traversable.steps(), from);
-        costs.reached().for_each(|index| reached.insert(index));
+        let reached = ViewPoints::of(&self.grid, costs.reached());
         let largest = self.gains.largest_changes(&reached);
         Raster::from_fn(self.grid, |cell| {
             let (change, from) = largest[self.grid.index(cell)?]?;
@@ -165,11 +164,10 @@ impl Planner {
     pub fn is_confined(&self, from: Cell) -> bool {
         let reached = self.traversable.steps().reached(self.grid.index(from));
         let reached: Vec<usize> = (0..self.grid.len()).filter(|i| reached[*i]).collect();
-        let most = self.traversable.most_within(2.0 * self.radius);
         let center = |index: &usize| self.grid.center(self.grid.cell(*index));
         let is_near_all = |at: &usize| {
             reached.iter().all(|i| (center(i) - center(at)).norm() < 2.0 * self.radius)
         };
-        reached.len() <= most && reached.iter().any(is_near_all)
+        reached.iter().any(is_near_all)
     }
 }

@@ -24,20 +24,22 @@ impl Planner {
         contest: &mut Contest,
         least: Option<LeastChange>,
     ) {
-        let weighs = self.parameters().strategy.uses_gain();
-        let Some(least) = least else {
-            if weighs {
-                self.refresh_bounds(contest);
-                self.fill_deciding_gains(contest);
-            }
+        if contest.score != Score::Closest {
+            let all = self.view_points(&contest.records);
+            self.gains.refresh_bounds(&all);
+        } else if least.is_none() {
             return;
-        };
-        self.refresh_bounds(contest);
-        let by_bounds = self.in_vain(map, contest, least, 0);
-        by_bounds.into_iter().for_each(|place| contest.pass_over(place));
+        }
+        if let Some(least) = least {
+            self.known_in_vain(contest, least).into_iter().for_each(|i| contest.pass_over(i));
+        }
         loop {
             self.fill_deciding_gains(contest);
-            let vain = self.in_vain(map, contest, least, REPORTED);
+            let vain = match least {
+                None => return,
+                Some(least) if self.gains.tells_cells_apart() => self.known_in_vain(contest, least),
+                Some(least) => self.best_in_vain(map, contest, least),
+            };
             if vain.is_empty() {
                 return;
             }
@@ -45,28 +47,28 @@ impl Planner {
         }
     }
 
-    /// The places of candidates of which is known that they do not promise enough; where the literal
-    /// equations must be asked, of so many of the best.
-    fn in_vain(
-        &self,
-        map: &CoverageMap,
-        contest: &Contest,
-        least: LeastChange,
-        asked: usize,
-    ) -> Vec<usize> {
-        let index = |place: usize| self.grid.index(contest.records[place].cell);
-        if self.gains.tells_cells_apart() {
-            let is_in_vain = |i: usize| self.gains.promise(i) < least.scan;
-            return contest.left().filter(|place| index(*place).is_some_and(is_in_vain)).collect();
-        }
-        let is_in_vain = |i: usize| self.gains.is_exact(i) && !self.promises(map, i, least);
+    /// The places of candidates whose promise, or its bound, is not enough; none where cells are not told
+    /// apart.
+    fn known_in_vain(&self, contest: &Contest, least: LeastChange) -> Vec<usize> {
+        let index = |place: &usize| self.grid.index(contest.records[*place].cell);
+        let is_in_vain = |i: usize| self.gains.promise(i) < least.scan;
+        contest.left().filter(|place| index(place).is_some_and(is_in_vain)).collect()
+    }
+
+    /// Of the best, the places of those that are evaluated and do not promise enough by the literal
+    /// equations, which are too slow to ask them of all.
+    fn best_in_vain(&self, map: &CoverageMap, contest: &Contest, least: LeastChange) -> Vec<usize> {
+        let is_in_vain = |place: &usize| {
+            let index = self.grid.index(contest.records[*place].cell);
+            index.is_some_and(|i| self.gains.is_exact(i) && !self.promises(map, i, least))
+        };
         let mut places: Vec<usize> = contest.left().collect();
         let better = |a: &usize, b: &usize| {
             contest.records[*b].score.total_cmp(&contest.records[*a].score).then(a.cmp(b))
         };
         places.sort_by(better);
-        places.truncate(asked);
-        places.into_par_iter().filter(|place| index(*place).is_some_and(is_in_vain)).collect()
+        places.truncate(REPORTED);
+        places.into_par_iter().filter(is_in_vain).collect()
     }
 
     /// Leaves out the candidates that would measure in vain.
@@ -77,9 +79,7 @@ impl Planner {
         least: Option<LeastChange>,
     ) {
         let Some(least) = least else { return };
-        let mut all = ViewPoints::new(&self.grid);
-        candidates.iter().for_each(|index| all.insert(*index));
-        self.gains.refresh_gains(&all);
+        self.gains.refresh_gains(&ViewPoints::of(&self.grid, candidates.iter().copied()));
         let promises = |index: &usize| self.promises(map, *index, least);
         *candidates = candidates.par_iter().copied().filter(promises).collect();
     }
@@ -103,17 +103,6 @@ impl Planner {
             reasons.map(|(_, change)| change).sum()
         };
         stencil.beams.iter().map(of_beam).sum::<f64>() >= least.scan
-    }
-
-    /// Bounds the gains of all candidates, where a strategy weighs gains. For the others gains tell only
-    /// who would measure in vain: those of the nearest are enough.
-    fn refresh_bounds(&mut self, contest: &Contest) {
-        let all = self.view_points(&contest.records);
-        if contest.score == Score::Closest {
-            self.gains.refresh_sight(&all);
-        } else {
-            self.gains.refresh_bounds(&all);
-        }
     }
 
     /// Fills in the scores of all records, with the gains of those that may have the largest gain,

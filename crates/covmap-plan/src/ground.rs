@@ -5,14 +5,14 @@
 //! longer, the robot asks whether it could stand on more ground if cells that may be free were free, and
 //! measures those as long as it learns anything about them.
 
-use crate::Planner;
 use crate::parameters::LeastChange;
 use crate::passage::{ROOM, regions};
 use crate::planner::Candidates;
+use crate::{Planner, TravelCosts};
 use covmap::{Cell, CoverageMap, bin_coverage};
 use covmap_gain::ViewPoints;
 
-/// A cell may be free if it is with at least this probability. (Of one that nothing is known of it is .27,
+/// A cell may be free if it is with at least this probability. (A cell of which nothing is known has .27,
 /// with 11 bins.)
 const MAY_BE_FREE: f64 = 0.2;
 
@@ -22,21 +22,20 @@ const DOUBT: f64 = 0.1;
 impl Planner {
     /// For each cell that keeps the robot in the cell `from` off more ground the candidate that is
     /// expected to change it most, if that is enough, and what a scan must promise then: as much as one
-    /// cell that counts. `None` if there is no such ground, or if it is not asked what is expected to
-    /// change.
+    /// cell that counts. `None` if there is no such ground, if it is not asked what is expected to change,
+    /// or with the product of Eq. (9), which does not tell the cells apart.
     pub(crate) fn candidates_towards_ground(
         &mut self,
         map: &CoverageMap,
         from: Cell,
     ) -> Option<(Candidates, LeastChange)> {
         let LeastChange { cell: least, .. } = self.least_change?;
-        let keeps_off = self.what_keeps_off_ground(map, from)?;
         let mut candidates = self.candidates(from);
+        let keeps_off = self.what_keeps_off_ground(map, &candidates.costs)?;
         let is_wanted =
             |&(index, distance): &(usize, f32)| keeps_off[index] && self.is_reason(index, distance);
-        let mut wanted = ViewPoints::new(&self.grid);
-        let sees = candidates.indices.iter().filter(|index| self.gains.sees(**index, is_wanted));
-        sees.for_each(|index| wanted.insert(*index));
+        candidates.indices.retain(|index| self.gains.sees(*index, is_wanted));
+        let wanted = ViewPoints::of(&self.grid, candidates.indices.iter().copied());
         let largest = self.gains.largest_changes(&wanted);
         let of_cell = largest.into_iter().zip(&keeps_off).filter(|(_, keeps_off)| **keeps_off);
         let enough =
@@ -50,13 +49,13 @@ impl Planner {
 
     /// Which cells keep the robot off ground that it could stand on if they were free, as they may be;
     /// `None` if there is no such ground of about a square metre beside what it can reach.
-    fn what_keeps_off_ground(&self, map: &CoverageMap, from: Cell) -> Option<Vec<bool>> {
-        let reached = self.traversable.steps().reached(self.grid.index(from));
+    fn what_keeps_off_ground(&self, map: &CoverageMap, costs: &TravelCosts) -> Option<Vec<bool>> {
+        let is_reached = |i: usize| costs.cost(i).is_some();
         let may_be_free: Vec<bool> = self.grid.cells().map(|c| self.may_be_free(map, c)).collect();
         let hoped = self.traversable.with_free(|index| may_be_free[index]);
         let steps = hoped.steps();
-        let is_new = |i: usize| hoped.at(i) && !reached[i] && !self.exploration.is_outside(i);
-        let is_next_to_reached = |i: usize| steps.neighbours(i).any(|beside| reached[beside]);
+        let is_new = |i: usize| hoped.at(i) && !is_reached(i) && !self.exploration.is_outside(i);
+        let is_next_to_reached = |i: usize| steps.neighbours(i).any(is_reached);
         let least = ROOM * self.traversable.body_cells();
         let ground = regions(&steps, least, is_new, is_next_to_reached);
         let mut keeps_off = vec![false; self.grid.len()];

@@ -52,7 +52,7 @@ pub enum Reason {
 /// must be expected to tell, together.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Effort {
-    /// The floor plan, with half of the scans of `Standard`.
+    /// The floor plan, with two thirds of the scans of `Standard`.
     Quick,
     /// The default.
     Standard,
@@ -112,7 +112,7 @@ pub struct PlannerParameters {
     pub strategy: Strategy,
     /// What a view-point is expected to gain: the paper's Eq. (14), or mutual information.
     pub gain: InformationGain,
-    /// When a cell is a reason to measure.
+    /// When cells are a reason to measure.
     pub reason: Reason,
     /// ε: a cell with an entropy up to this is explored \[nats\].
     pub entropy_threshold: f64,
@@ -237,8 +237,7 @@ impl PlannerParameters {
 
     /// Strategies that weigh gains keep them; the others report some few.
     pub(crate) fn upkeep(&self) -> Upkeep {
-        let foresees = matches!(self.reason, Reason::ExpectedChange { .. });
-        let keeps = self.strategy.uses_gain() || foresees && self.strategy.counting().is_none();
+        let keeps = self.strategy.uses_gain() || self.least_change(1.0).is_some();
         if keeps { Upkeep::Kept } else { Upkeep::OnDemand }
     }
 

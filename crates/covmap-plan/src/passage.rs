@@ -24,9 +24,7 @@ impl Planner {
         let here = travel_costs(steps.clone(), from);
         let is_cut_off = |i: usize| self.traversable.at(i) && here.cost(i).is_none();
         let cut_off: Vec<usize> = (0..self.grid.len()).filter(|i| is_cut_off(*i)).collect();
-        let mut wanted = ViewPoints::new(&self.grid);
-        cut_off.iter().for_each(|i| wanted.insert(*i));
-        self.gains.refresh_sight(&wanted);
+        self.gains.refresh_sight(&ViewPoints::of(&self.grid, cut_off.iter().copied()));
         let may_be = |i: &usize| !self.measured.is_spent(*i) && self.gains.has_reason(*i);
         let mut offered = cut_off.into_iter().filter(may_be).collect();
         self.leave_out_vain(map, &mut offered, self.least_change);

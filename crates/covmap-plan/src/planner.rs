@@ -261,8 +261,7 @@ impl Planner {
     /// again until it can leave, or there is no reason left.
     pub(crate) fn candidates(&mut self, from: Cell) -> Candidates {
         let costs = travel_costs(self.traversable.steps(), from);
-        let mut reached = ViewPoints::new(&self.grid);
-        costs.reached().for_each(|index| reached.insert(index));
+        let reached = ViewPoints::of(&self.grid, costs.reached());
         self.gains.refresh_sight(&reached);
         let trapped = costs.reached().all(|i| self.measured.is_near(i, from));
         let mut indices = self.gains.with_reason(&reached);
@@ -284,10 +283,7 @@ impl Planner {
     }
 
     pub(crate) fn view_points(&self, records: &[CandidateRecord]) -> ViewPoints {
-        let mut set = ViewPoints::new(&self.grid);
-        let indices = records.iter().filter_map(|r| self.grid.index(r.cell));
-        indices.for_each(|index| set.insert(index));
-        set
+        ViewPoints::of(&self.grid, records.iter().filter_map(|r| self.grid.index(r.cell)))
     }
 
     /// Fills in the gains of all records.

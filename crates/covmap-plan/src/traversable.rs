@@ -125,13 +125,6 @@ impl Traversable {
         self.disc.iter().filter_map(move |(dx, dy)| self.grid.index(at.offset(*dx, *dy)))
     }
 
-    /// At most so many cells have their centres nearer than this to one place \[m\].
-    pub(crate) fn most_within(&self, distance: f64) -> usize {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
-        let side = (2.0 * distance / self.grid.resolution()).clamp(0.0, 1e4) as usize + 1;
-        side * side
-    }
-
     /// How many cells' centres are under the body.
     pub(crate) fn body_cells(&self) -> usize {
         self.disc.len()

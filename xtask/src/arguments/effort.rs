@@ -6,7 +6,7 @@ use covmap_plan::Effort;
 /// How much is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum EffortName {
-    /// The floor plan, with half of the scans of standard
+    /// The floor plan, with two thirds of the scans of standard
     Quick,
     /// The default
     Standard,

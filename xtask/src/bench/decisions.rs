@@ -38,7 +38,7 @@ fn with_gain(config: &Config) -> Config {
 /// IG with every cell for ever a reason to measure: every reachable cell is a candidate.
 pub(super) fn for_ever(config: &Config) -> Config {
     let mut config = with_gain(config);
-    (config.planner.reason, config.planner.scan_spacing) = (Reason::InSight, 0.0);
+    config.planner.reason = Reason::InSight;
     config.planner.entropy_threshold = 0.0;
     config.planner.stall_rule = StallRule::Literal;
     (config.planner.stall_limit, config.planner.max_counted_scans) = (1000, 1_000_000);

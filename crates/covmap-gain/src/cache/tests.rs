@@ -44,8 +44,7 @@ fn values(arch: Arch) -> (Vec<u64>, Vec<[u16; LANES]>, Vec<u16>) {
     let mut cache = kept(&model, grid);
     cache.arch = arch;
     let all = Raster::filled(grid, ());
-    let mut wanted = ViewPoints::new(&grid);
-    (0..all.values().len()).for_each(|index| wanted.insert(index));
+    let wanted = ViewPoints::of(&grid, 0..all.values().len());
     for turn in 0..4 {
         let pose = Isometry2::new(Vector2::new(0.1 * f64::from(turn), 0.0), 0.1);
         let range = |i| Range::Echo(0.5 + 0.07 * f64::from((i * 7 + turn) % 24));
@@ -81,8 +80,7 @@ fn gains_that_are_kept_are_those_of_a_fresh_cache() {
             for change in integrate(&model, &mut map, &scan) {
                 see(&mut cache, &map, change.cell);
             }
-            let mut wanted = ViewPoints::new(&grid);
-            (rows.start * width..rows.end * width).for_each(|index| wanted.insert(index));
+            let wanted = ViewPoints::of(&grid, rows.start * width..rows.end * width);
             cache.refresh_gains(&wanted);
             let mut fresh = kept(&model, grid);
             for cell in grid.cells() {
@@ -103,8 +101,7 @@ fn no_gain_exceeds_its_bound() {
         let grid = Grid::new(Point2::new(-2.0, -2.0), 0.1, 43, 37).unwrap();
         let mut map = CoverageMap::new(grid, 11).unwrap();
         let mut cache = kept(&model, grid);
-        let mut wanted = ViewPoints::new(&grid);
-        (0..grid.len()).for_each(|index| wanted.insert(index));
+        let wanted = ViewPoints::of(&grid, 0..grid.len());
         let (mut loose, mut all) = (0.0, 0.0);
         for turn in 0..12u32 {
             let pose = Isometry2::new(Vector2::new(0.1 * f64::from(turn), 0.0), 0.1);

@@ -118,9 +118,8 @@ impl Moment {
 
     /// All candidates.
     pub(super) fn view_points(&self) -> ViewPoints {
-        let mut all = ViewPoints::new(self.grid());
-        self.candidates.iter().for_each(|candidate| all.insert(self.index(candidate.cell)));
-        all
+        let indices = self.candidates.iter().map(|candidate| self.index(candidate.cell));
+        ViewPoints::of(self.grid(), indices)
     }
 
     /// E\[I\] by the equations as printed.
