@@ -3,7 +3,7 @@
 use crate::{Event, Mission, MissionError, Robot, standing_place};
 use covmap::{Cell, Change, CoverageMap, Raster};
 use covmap_model::{Body, BodyEvent, Looks, SensorModel};
-use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Promise, Reach};
+use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Promise, Reach, turns};
 use covmap_sonar::{Range, Scan};
 use covmap_world::Drive;
 use nalgebra::{Isometry2, Point2};
@@ -66,12 +66,7 @@ impl Run {
     /// How far the robot turned on its way: the angles between one piece of the path and the next, each
     /// at most π, summed up \[rad\].
     pub fn turns(&self) -> f64 {
-        let pieces = self.trajectory.windows(2).map(|ends| ends[1] - ends[0]);
-        let pieces: Vec<_> = pieces.filter(|piece| piece.norm() > 0.0).collect();
-        let turn = |pair: &[nalgebra::Vector2<f64>]| {
-            libm::atan2(pair[0].perp(&pair[1]), pair[0].dot(&pair[1])).abs()
-        };
-        pieces.windows(2).map(turn).sum()
+        turns(self.trajectory.windows(2).map(|ends| ends[1] - ends[0]))
     }
 
     /// The most that one more scan is expected to lower the entropy of some cell of a status by

@@ -55,14 +55,38 @@ fn some_obstacles() -> impl Generator<Value = Vec<Obstacle>> {
     )
 }
 
-fn strategies() -> impl Generator<Value = Strategy> {
-    prop::sample::select(vec![
+fn strategies() -> [Strategy; 5] {
+    [
         Strategy::Cl,
         Strategy::Ig,
         Strategy::IgWin { radius: 1.0 },
         Strategy::IgCl { alpha: 0.3 },
         Strategy::Count { times: 3.0, half_distance: None },
-    ])
+    ]
+}
+
+/// Explores a world; refused where the robot cannot stand in it.
+fn check_that_it_ends(
+    obstacles: Vec<Obstacle>,
+    strategy: Strategy,
+    seed: u64,
+    while_driving: Option<f64>,
+) -> Result<(), TestCaseError> {
+    let is_short = |o: &Obstacle| match o.shape {
+        Shape::Wall { from, to, .. } => libm::hypot(from.0 - to.0, from.1 - to.1) < 0.2,
+        _ => false,
+    };
+    prop_assume!(!obstacles.iter().any(is_short));
+    let world = world(obstacles);
+    let config = config(strategy);
+    let limits = Limits { while_driving, max_scans: Some(20_000) };
+    prop_assume!(Mission::new(&world, &config, None, limits).is_ok());
+    let (run, events, _) = run(&world, &config, seed, limits);
+    prop_assert!(matches!(run.ending, Ending::Explored | Ending::StartBlocked), "{:?}", run.ending);
+    prop_assert!(run.certificate.values().iter().all(|s| *s != CellStatus::Open));
+    let scans = events.iter().filter(|e| matches!(e, Event::Scan { .. })).count();
+    prop_assert_eq!(scans, run.scans.len());
+    Ok(())
 }
 
 proptest! {
@@ -70,23 +94,24 @@ proptest! {
 
     #[test]
     fn every_run_ends_and_nothing_is_open_then(
-        obstacles in some_obstacles(), strategy in strategies(), seed in 0..1000u64,
-        while_driving in prop::option::of(0.1..0.5f64)
+        obstacles in some_obstacles(), strategy in prop::sample::select(strategies().to_vec()),
+        seed in 0..1000u64, while_driving in prop::option::of(0.1..0.5f64)
     ) {
-        let is_short = |o: &Obstacle| match o.shape {
-            Shape::Wall { from, to, .. } => libm::hypot(from.0 - to.0, from.1 - to.1) < 0.2,
-            _ => false,
-        };
-        prop_assume!(!obstacles.iter().any(is_short));
-        let world = world(obstacles);
-        let config = config(strategy);
-        let limits = Limits { while_driving, max_scans: Some(20_000) };
-        prop_assume!(Mission::new(&world, &config, None, limits).is_ok());
-        let (run, events, _) = run(&world, &config, seed, limits);
-        prop_assert!(matches!(run.ending, Ending::Explored | Ending::StartBlocked), "{:?}", run.ending);
-        prop_assert!(run.certificate.values().iter().all(|s| *s != CellStatus::Open));
-        let scans = events.iter().filter(|e| matches!(e, Event::Scan { .. })).count();
-        prop_assert_eq!(scans, run.scans.len());
+        check_that_it_ends(obstacles, strategy, seed, while_driving)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    #[ignore = "minutes: cargo test --release -p covmap-explore --test runs -- --ignored"]
+    fn each_of_300_worlds_is_explored_by_every_strategy(
+        obstacles in some_obstacles(), seed in 0..1000u64, while_driving in prop::option::of(0.1..0.5f64)
+    ) {
+        for strategy in strategies() {
+            check_that_it_ends(obstacles.clone(), strategy, seed, while_driving)?;
+        }
     }
 }
 

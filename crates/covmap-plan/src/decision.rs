@@ -13,7 +13,7 @@ pub struct CandidateRecord {
     pub cell: Cell,
     /// E\[I(l)\] \[nats\].
     pub gain: f64,
-    /// d_c(l, x) \[m\].
+    /// d_c(l, x) \[m\]; for IG_CL with what turns cost, `planner.turn_cost`.
     pub cost: f64,
     /// The first term of Eq. (16); for other strategies with α = 1.
     pub gain_term: f64,

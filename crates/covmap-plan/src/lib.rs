@@ -32,6 +32,7 @@ mod planner;
 mod strategy;
 mod travel_cost;
 mod traversable;
+mod turning;
 mod window;
 mod windowed;
 
@@ -45,3 +46,4 @@ pub use parameters::{
 pub use planner::Planner;
 pub use strategy::{Strategy, StrategyError};
 pub use travel_cost::{TravelCosts, travel_costs};
+pub use turning::turns;

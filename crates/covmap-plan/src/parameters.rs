@@ -128,6 +128,9 @@ pub struct PlannerParameters {
     pub scan_spacing: f64,
     /// A practical cap on the scans counted for one cell; reported whenever it fires.
     pub max_counted_scans: u32,
+    /// What a turn of one radian costs IG_CL, as much as so many metres of way \[m/rad\]: d(l, x) of
+    /// Eq. (16) is the length of the way and this for all turns on it. 0, the paper: turns cost nothing.
+    pub turn_cost: f64,
     /// Which cells must be explored.
     pub scope: Scope,
     /// The largest most likely coverage of a cell that the robot may drive over.
@@ -189,6 +192,7 @@ impl PlannerParameters {
             stall_rule: StallRule::Banded { first: 1.0, closest: 0.5 },
             scan_spacing: 0.0,
             max_counted_scans: 520,
+            turn_cost: 0.0,
             scope: Scope::Observable,
             traversable_coverage: 0.2,
             unknown_reflection: 0.0,
@@ -222,6 +226,7 @@ impl PlannerParameters {
             within("reason.scan", scan, 0.0, 100.0)?;
         }
         within("scan_spacing", self.scan_spacing, 0.0, 100.0)?;
+        within("turn_cost", self.turn_cost, 0.0, 100.0)?;
         within("max_counted_scans", f64::from(self.max_counted_scans), 1.0, 1e6)?;
         within("traversable_coverage", self.traversable_coverage, 0.0, 0.999)?;
         within("unknown_reflection", self.unknown_reflection, 0.0, 1.0)?;

@@ -5,6 +5,7 @@ use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
 use crate::parameters::LeastChange;
 use crate::traversable::Traversable;
+use crate::turning::straight;
 use crate::window::Window;
 use crate::{
     BodyEvidence, CandidateRecord, Decision, PlannerError, PlannerParameters, Scope, Strategy,
@@ -48,6 +49,8 @@ pub struct Planner {
     /// What a scan must be expected to change, if it is asked.
     pub(crate) least_change: Option<LeastChange>,
     pub(crate) window: Option<Window>,
+    /// The direction of the last piece of the way that the robot drove.
+    pub(crate) ahead: Option<Vector2<f64>>,
     /// The chosen view-point, and what was in sight of it when it was chosen.
     target: Option<(Cell, Vec<(usize, f32)>)>,
 }
@@ -103,6 +106,7 @@ impl Planner {
             novelty: vec![1.0; grid.len()],
             least_change,
             window,
+            ahead: None,
             target: None,
         };
         if let Ok(unknown) = CoverageMap::new(grid, model.parameters().bins) {
@@ -196,6 +200,7 @@ impl Planner {
     /// stands now: if that is a neighbour it can always drive that step again, and back.
     pub fn drove(&mut self, from: Cell, to: Cell) {
         self.traversable.drive(from, to);
+        self.ahead = (from != to).then(|| straight(from, to)).or(self.ahead);
         self.stand_on(to);
     }
 
@@ -269,17 +274,17 @@ impl Planner {
         Candidates { indices, costs, passage: Vec::new() }
     }
 
-    /// The candidates with their costs; gains and scores are not filled in.
-    fn records(&self, candidates: &Candidates) -> Vec<CandidateRecord> {
+    /// The candidates with their costs for a robot in the cell `from`; gains and scores are not filled in.
+    fn records(&self, candidates: &Candidates, from: Cell) -> Vec<CandidateRecord> {
         let record = |&index: &usize| CandidateRecord {
             cell: self.grid.cell(index),
             gain: 0.0,
-            cost: candidates.costs.cost(index).unwrap_or(f64::INFINITY),
+            cost: self.cost(candidates, from, index),
             gain_term: 0.0,
             cost_term: 0.0,
             score: 0.0,
         };
-        candidates.indices.iter().map(record).collect()
+        candidates.indices.par_iter().map(record).collect()
     }
 
     pub(crate) fn view_points(&self, records: &[CandidateRecord]) -> ViewPoints {
@@ -305,7 +310,7 @@ impl Planner {
         if candidates.indices.is_empty() {
             candidates = self.candidates_beyond_a_passage(map, from).unwrap_or(candidates);
         }
-        let mut records = self.records(&candidates);
+        let mut records = self.records(&candidates, from);
         self.fill_gains(&mut records);
         self.score().apply(&mut records);
         records
@@ -353,7 +358,7 @@ impl Planner {
         least: Option<LeastChange>,
     ) -> Option<Decision> {
         let with_gain = self.parameters.strategy.uses_gain();
-        let mut contest = Contest::new(self.records(candidates), self.score());
+        let mut contest = Contest::new(self.records(candidates, from), self.score());
         self.fill_and_pass_over(map, &mut contest, least);
         let decided_by_oracle = if with_gain { self.decide_ties(map, &mut contest) } else { 0 };
         let target = contest.records[contest.best()?].cell;

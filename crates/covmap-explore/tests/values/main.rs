@@ -62,6 +62,7 @@ fn mission(cells: usize, directions: &[f64], range: f64, limits: Limits) -> Miss
             strategy: Strategy::Cl,
             reason: covmap_plan::Reason::InSight,
             scan_spacing: 0.0,
+            turn_cost: 0.0,
             passage_length: 0.0,
             stall_rule: StallRule::Unbanded,
             ..PlannerParameters::standard()

@@ -45,6 +45,7 @@ pub(crate) fn plain(strategy: Strategy) -> PlannerParameters {
         reason: Reason::InSight,
         entropy_threshold: 0.1,
         scan_spacing: 0.0,
+        turn_cost: 0.0,
         passage_length: 0.0,
         stall_rule: StallRule::Unbanded,
         ..PlannerParameters::standard()

@@ -7,6 +7,7 @@ use super::corridor::{Corridor, plain, two_bins};
 use super::{all_close, close};
 use covmap::Cell;
 use covmap_plan::{CellStatus, PlannerParameters, Scope, Strategy};
+use std::f64::consts::PI;
 
 fn corridor_with(parameters: &PlannerParameters) -> Corridor {
     let mut corridor = Corridor::new(11, &[0.0, 180.0], &two_bins(1.0), parameters);
@@ -96,6 +97,24 @@ fn gain_and_travel_cost_are_weighed_in_shares_of_the_largest() {
         let decision = corridor.choose(4).unwrap();
         assert_eq!(decision.target.x, expected, "{alpha}");
         close(decision.best[0].score, scores[0].max(scores[1]), 1e-6);
+    }
+}
+
+#[test]
+fn a_turn_costs_as_much_as_its_radians_say() {
+    for (strategy, of_turns) in [(Strategy::IgCl { alpha: 0.0 }, 0.5 * PI), (Strategy::Cl, 0.0)] {
+        let mut corridor = corridor_with(&PlannerParameters { turn_cost: 0.5, ..plain(strategy) });
+        let costs = |corridor: &mut Corridor| {
+            let table = corridor.planner.candidate_table(&corridor.map, Cell::new(5, 0));
+            table.iter().map(|record| record.cost).collect::<Vec<_>>()
+        };
+        // 3 and 7 are 2 m away, and whoever came from nowhere needs no turn.
+        all_close(&costs(&mut corridor), &[2.0, 2.0], 1e-12);
+        corridor.planner.drove(Cell::new(4, 0), Cell::new(5, 0));
+        all_close(&costs(&mut corridor), &[2.0 + of_turns, 2.0], 1e-12);
+        assert_eq!(corridor.target(5), if of_turns > 0.0 { 7 } else { 3 }, "{strategy}");
+        // To stay where it is needs none either.
+        assert_eq!(corridor.choose(7).unwrap().best[0].cost, 0.0);
     }
 }
 
