@@ -11,7 +11,7 @@ mod values;
 
 pub(crate) use bench::{Bench, Rows};
 pub(crate) use experiments::{Experiments, Figure, Paper, Table};
-pub(crate) use files::{Force, Log, Model, Truth};
+pub(crate) use files::{Beside, Force, Log, Model, Truth};
 pub(crate) use read_out::{ReadOutFile, Reader};
 pub(crate) use safe_map::SafeMap;
 
@@ -210,6 +210,9 @@ pub(crate) enum Command {
     /// Says and draws why a decision of a run was taken.
     #[command(after_help = EXPLAIN_EXAMPLES)]
     Explain(Explain),
+    /// Lays runs of `explore` side by side: a table, and accuracy over scans and metres.
+    #[command(after_help = files::BESIDE_EXAMPLES)]
+    Beside(Beside),
     /// Makes the map of what a real robot recorded.
     #[command(after_help = MAP_EXAMPLES)]
     Map(Map),

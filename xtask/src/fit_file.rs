@@ -127,8 +127,8 @@ impl FitPlan {
         for axis in &file.axes {
             axis.place(&begin.config.model).map_err(about(path))?;
         }
-        if file.axes.is_empty() || file.training.is_empty() {
-            bail!("{}: axes and training need at least one entry each", path.display());
+        if file.training.is_empty() {
+            bail!("{}: training needs at least one entry", path.display());
         }
         if !(1..=1000).contains(&file.starts) || !(1..=1_000_000).contains(&file.evaluations) {
             bail!("{}: starts must lie in 1..=1000, evaluations in 1..=1000000", path.display());

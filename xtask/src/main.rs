@@ -6,6 +6,7 @@
 
 mod arguments;
 mod bench;
+mod beside;
 mod campaign;
 mod certificate_file;
 mod compare;
@@ -76,6 +77,7 @@ fn main() -> ExitCode {
         Command::Compare(arguments) => compare::run(&arguments),
         Command::Survey(arguments) => survey::run(&arguments),
         Command::Readings(arguments) => readings::run(&arguments),
+        Command::Beside(arguments) => beside::run(&arguments),
         Command::Bench(arguments) => bench::run(&arguments),
         Command::Figure(arguments) => figure::run(&arguments),
         Command::Table(arguments) => figure::table(&arguments),

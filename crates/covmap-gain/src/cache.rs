@@ -8,12 +8,12 @@ use crate::belief::Belief;
 use crate::evaluator::Evaluator;
 use crate::largest::Largest;
 use crate::memory::{Size, whole};
-use crate::outcomes::{AskedRow, RowGains};
+use crate::outcomes::{AskedRow, BeamAnswer, RowGains};
 use crate::sight::{GroupLikelihood, RasterBeam};
 use crate::stencil::FARTHEST;
 use crate::view_points::{group_and_lane, groups_per_row};
 use crate::{BeamError, InformationGain, RangePrediction, Stencil, ViewPoints};
-use covmap::lanes::{LANES, Lanes};
+use covmap::lanes::LANES;
 use covmap::{Cell, CoverageMap, Grid};
 use covmap_model::{ModelParameters, Registers, SensorModel};
 use pulp::Arch;
@@ -73,15 +73,12 @@ pub struct GainCache {
     states: Vec<BeamState>,
     /// V(l): how many cells of the beam are in sight.
     in_sight: Vec<[u16; LANES]>,
-    /// E\[I\] of the beam, or an upper bound of it.
-    beam_gain: Vec<Lanes>,
+    /// What the beam is expected to tell, or upper bounds of it.
+    answers: Vec<BeamAnswer>,
     /// Which vector registers are used; all give the same bits.
     arch: Arch,
     /// A gain was met that is above its bound.
     exceeded: bool,
-    /// What the reasons to measure in a beam are expected to gain, of those that gain enough. Empty if
-    /// the evaluation does not tell the cells apart.
-    beam_promise: Vec<Lanes>,
     /// What a cell must be expected to gain to count for a promise.
     least_change: f32,
 }
@@ -117,7 +114,6 @@ impl GainCache {
         let group_beams = groups * stencil.beams.len();
         let beam = |beam| RasterBeam::new(beam, &belief, prediction.uniform_share);
         let evaluator = Evaluator::new(model, &stencil, grid, &belief, (prediction.gain, upkeep));
-        let promises = if evaluator.tells_cells_apart() { group_beams } else { 0 };
         Ok(Self {
             grid,
             upkeep,
@@ -130,8 +126,7 @@ impl GainCache {
             mean_gain: vec![[0.0; LANES]; groups],
             states: vec![BeamState::default(); group_beams],
             in_sight: vec![[0; LANES]; group_beams],
-            beam_gain: vec![[0.0; LANES]; group_beams],
-            beam_promise: vec![[0.0; LANES]; promises],
+            answers: vec![BeamAnswer::all(0.0, 0.0); group_beams],
             arch: Registers::Avx512.or_narrower(),
             exceeded: false,
             least_change: 0.0,
@@ -237,7 +232,7 @@ impl GainCache {
             .groups
             .par_chunks_mut(per_row)
             .zip(self.states.par_chunks_mut(per_row * beams))
-            .zip(self.beam_gain.par_chunks_mut(per_row * beams))
+            .zip(self.answers.par_chunks_mut(per_row * beams))
             .zip(self.mean_gain.par_chunks_mut(per_row))
             .zip(wanted.groups().par_chunks(per_row))
             .enumerate()
@@ -245,23 +240,26 @@ impl GainCache {
         let (width, arch) = (self.grid.width(), self.arch);
         let (beams, belief, evaluator) = (&self.beams, &self.belief, &self.evaluator);
         let new = GroupLikelihood::new;
-        rows.for_each_init(new, |likelihood, (y, ((((groups, states), gain), mean), wanted))| {
-            if groups.iter().zip(wanted).any(|(group, wanted)| wanted & !group.bound != 0) {
-                let here = belief.bordered(y * width);
-                arch.dispatch(RefreshBounds {
-                    beams,
-                    belief,
-                    evaluator,
-                    here,
-                    wanted,
-                    groups,
-                    states,
-                    gain,
-                    mean,
-                    likelihood,
-                });
-            }
-        });
+        rows.for_each_init(
+            new,
+            |likelihood, (y, ((((groups, states), answers), mean), wanted))| {
+                if groups.iter().zip(wanted).any(|(group, wanted)| wanted & !group.bound != 0) {
+                    let here = belief.bordered(y * width);
+                    arch.dispatch(RefreshBounds {
+                        beams,
+                        belief,
+                        evaluator,
+                        here,
+                        wanted,
+                        groups,
+                        states,
+                        answers,
+                        mean,
+                        likelihood,
+                    });
+                }
+            },
+        );
     }
 
     /// Brings E\[I(l)\] up to date for some view-points, and V(l).
@@ -301,13 +299,13 @@ impl GainCache {
             .mean_gain
             .par_iter_mut()
             .zip(&mut self.groups)
-            .zip(self.beam_gain.par_chunks(beams))
+            .zip(self.answers.par_chunks(beams))
             .zip(self.states.par_chunks(beams))
             .zip(wanted.groups())
             .with_min_len(GROUPS_PER_THREAD);
-        averages.for_each(|((((mean, group), gains), states), wanted)| {
+        averages.for_each(|((((mean, group), answers), states), wanted)| {
             if wanted & !group.gain != 0 {
-                *mean = average(gains);
+                *mean = average(answers);
                 up_to_date(group, states);
             }
         });
@@ -387,15 +385,15 @@ impl GainCache {
             let at = (row.y * per_row + asked.group) * beams + asked.beam;
             let state = &mut self.states[at];
             let bounded = state.bound & !state.gain;
+            let kept = &mut self.answers[at];
             for lane in (0..LANES).filter(|lane| wanted >> lane & 1 == 1) {
-                #[allow(clippy::cast_possible_truncation, reason = "kept as f32 for size")]
-                let (gain, kept) = (answer.gain[lane] as f32, &mut self.beam_gain[at][lane]);
-                let is_bounded = bounded >> lane & 1 == 1;
-                self.exceeded |= is_bounded && gain > *kept + ROUNDING * (1.0 + kept.abs());
-                *kept = gain;
-                if let Some(promise) = self.beam_promise.get_mut(at) {
-                    promise[lane] = answer.promise[lane];
-                }
+                let is_above =
+                    |value: f32, bound: f32| value > bound + ROUNDING * (1.0 + bound.abs());
+                self.exceeded |= bounded >> lane & 1 == 1
+                    && (is_above(answer.gain[lane], kept.gain[lane])
+                        || is_above(answer.promise[lane], kept.promise[lane]));
+                kept.gain[lane] = answer.gain[lane];
+                kept.promise[lane] = answer.promise[lane];
             }
             (state.gain, state.bound) = (state.gain | wanted, state.bound | wanted);
         }

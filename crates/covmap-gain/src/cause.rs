@@ -33,7 +33,7 @@ use crate::belief::{Belief, NOT_KNOWN, lanes_at, padded};
 use crate::largest::Largest;
 use crate::memory::Size;
 use crate::numbers::to_f32;
-use crate::outcomes::{AskedRow, RowGains};
+use crate::outcomes::{AskedRow, BeamAnswer, RowGains};
 use crate::sight::GroupLikelihood;
 use crate::view_points::groups_per_row;
 use crate::{InformationGain, Stencil, evidence::Evidence};
@@ -46,7 +46,7 @@ use ends::AtEnd;
 use polynomials::Polynomials;
 use pulp::Arch;
 use rayon::prelude::*;
-use sums::{AllCells, GainsOfRow, GroupSum, LargestOfRow};
+use sums::{AllAndReasons, GainsOfRow, GroupSum, LargestOfRow};
 
 /// So many rows of view-points are worked at by one thread at least.
 const ROWS_PER_THREAD: usize = 1;
@@ -176,8 +176,8 @@ impl Cause {
         self.ceilings.is_some()
     }
 
-    /// An upper bound of the gain of a beam from each view-point of a group; `here` is the index of
-    /// the first one in the bordered rasters.
+    /// Upper bounds of what a beam is expected to tell from each view-point of a group; `here` is the
+    /// index of the first one in the bordered rasters.
     #[inline(always)]
     pub(crate) fn bound(
         &self,
@@ -185,7 +185,7 @@ impl Cause {
         beam: usize,
         here: usize,
         likelihood: &GroupLikelihood,
-    ) -> Lanes {
+    ) -> BeamAnswer {
         let (y, x) = belief.place(here);
         let count = likelihood.echoes().len() + 1;
         let (mut outcomes, mut probabilities) =
@@ -196,10 +196,11 @@ impl Cause {
         }
         outcomes.push(usize::MAX);
         probabilities.push(likelihood.no_echo().map(to_f32));
-        let (group, mut sum) = (GroupSum { cause: self, belief, y, x }, AllCells([0.0; LANES]));
+        let group = GroupSum { cause: self, belief, y, x };
+        let mut sum = AllAndReasons::of(&self.beams[beam].cells, (belief.limits(), here));
         let fronts = &mut Vec::with_capacity(count);
         group.sum::<false>(beam, (&outcomes, &probabilities), fronts, &mut sum);
-        sum.0
+        sum.answer
     }
 
     /// What every cell is expected to change by at most, from some rows of view-points, of which those

@@ -10,12 +10,11 @@ use crate::cause::Cause;
 use crate::largest::Largest;
 use crate::layout::PlaneLayout;
 use crate::memory::Size;
-use crate::outcomes::{AskedRow, RowGains};
+use crate::outcomes::{AskedRow, BeamAnswer, RowGains};
 use crate::product::Product;
 use crate::sight::{GroupLikelihood, RasterBeam};
 use crate::{InformationGain, Stencil, Upkeep};
 use covmap::Grid;
-use covmap::lanes::{LANES, Lanes};
 use covmap_model::{SensorModel, Update};
 use pulp::Arch;
 
@@ -141,8 +140,8 @@ impl Evaluator {
         }
     }
 
-    /// An upper bound of the gain of a beam from each view-point of a group \[nats\]; infinite if
-    /// there is none. `here` is the index of the group's first view-point in the bordered rasters.
+    /// Upper bounds of what a beam is expected to tell from each view-point of a group; infinite if
+    /// there are none. `here` is the index of the group's first view-point in the bordered rasters.
     #[inline(always)]
     pub(crate) fn bound(
         &self,
@@ -150,11 +149,16 @@ impl Evaluator {
         (number, beam): (usize, &RasterBeam),
         here: usize,
         likelihood: &GroupLikelihood,
-    ) -> Lanes {
-        let bound = match self {
-            Self::Product(product) => product.bound(beam, here, likelihood),
-            Self::Cause(cause) => Some(cause.bound(belief, number, here, likelihood)),
-        };
-        bound.unwrap_or([f32::INFINITY; LANES])
+    ) -> BeamAnswer {
+        let mut answer = BeamAnswer::all(f32::INFINITY, f32::INFINITY);
+        match self {
+            Self::Product(product) => {
+                if let Some(gain) = product.bound(beam, here, likelihood) {
+                    answer.gain = gain;
+                }
+                answer
+            }
+            Self::Cause(cause) => cause.bound(belief, number, here, likelihood),
+        }
     }
 }

@@ -26,15 +26,22 @@ pub(crate) struct AskedRow {
     pub(crate) probabilities: Vec<Lanes>,
 }
 
-/// What one of these beams is expected to tell, from each view-point of its group. From view-points
-/// that did not ask it means nothing.
+/// What one of these beams is expected to tell, from each view-point of its group, or upper bounds of
+/// that. From view-points that did not ask it means nothing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BeamAnswer {
     /// E\[I\] \[nats\].
-    pub(crate) gain: [f64; LANES],
+    pub(crate) gain: Lanes,
     /// What the cells that are reasons to measure are expected to gain, of those that gain enough
-    /// \[nats\].
+    /// \[nats\]; infinite if the cells are not told apart.
     pub(crate) promise: Lanes,
+}
+
+impl BeamAnswer {
+    /// The same from all view-points.
+    pub(crate) fn all(gain: f32, promise: f32) -> Self {
+        Self { gain: [gain; LANES], promise: [promise; LANES] }
+    }
 }
 
 /// The answer for each beam of an [`AskedRow`].

@@ -29,6 +29,17 @@ Example:
   cargo xtask model --range 1.0 --out model.csv
 ";
 
+pub(super) const BESIDE_EXAMPLES: &str = "\
+The folder that is written: runs.csv, with a line for each run, runs.svg and runs.png. The class mean
+is that of the log-likelihoods of free cells, partly covered ones, and the first layer of solid ones;
+runs of one strategy are joined by a line.
+
+Example:
+  cargo xtask explore scenarios/lab.ron --effort quick
+  cargo xtask explore scenarios/lab.ron --effort thorough
+  cargo xtask beside out/lab-*-quick out/lab-*-thorough
+";
+
 /// Whether results may be replaced that are not the same.
 #[derive(Debug, Clone, Copy, Default, Args)]
 pub(crate) struct Force {
@@ -42,6 +53,21 @@ impl Force {
     pub(crate) fn replace(self) -> Replace {
         Replace::if_forced(self.force)
     }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Beside {
+    /// Folders that `explore` wrote
+    #[arg(value_name = "RUN", required = true)]
+    pub(crate) runs: Vec<PathBuf>,
+    /// Where the results go
+    #[arg(long, value_name = "DIR", default_value = "out/beside")]
+    pub(crate) out: PathBuf,
+    #[command(flatten)]
+    pub(crate) force: Force,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Args)]

@@ -2,7 +2,6 @@
 
 use super::GainCache;
 use crate::belief::{PAD, padded};
-use crate::numbers::as_f64;
 use crate::view_points::group_and_lane;
 use crate::{MemoryLayout, Stencil, ViewPoints};
 use covmap::lanes::LANES;
@@ -82,20 +81,16 @@ impl GainCache {
     /// Σ_i Σ_d p(d | c) · I(h_i | d)
     /// ```
     ///
-    /// It is this where the gain [is exact](Self::is_exact), and an upper bound where there is a bound
-    /// of the gain. With the product of Eq. (9) it is infinite: its evaluation does not tell the cells
+    /// It is this where the gain [is exact](Self::is_exact), an upper bound where there is a bound
+    /// of the gain, and infinite where there is neither. With the product of Eq. (9) it is infinite: its evaluation does not tell the cells
     /// apart.
     pub fn promise(&self, view_point: usize) -> f64 {
         let (group, lane) = group_and_lane(self.grid.width(), view_point);
-        let (state, count) = (&self.groups[group], self.beams.len());
-        match self.beam_promise.get(group * count..(group + 1) * count) {
-            Some(beams) if state.gain >> lane & 1 == 1 => {
-                beams.iter().map(|beam| f64::from(beam[lane])).sum()
-            }
-            // The ceiling of a cell is never negative.
-            Some(_) if state.bound >> lane & 1 == 1 => as_f64(count) * self.mean_gain[group][lane],
-            _ => f64::INFINITY,
+        if self.groups[group].bound >> lane & 1 == 0 {
+            return f64::INFINITY;
         }
+        let beams = &self.answers[group * self.beams.len()..(group + 1) * self.beams.len()];
+        beams.iter().map(|beam| f64::from(beam.promise[lane])).sum()
     }
 
     /// Whether [`promise`](Self::promise) says something.

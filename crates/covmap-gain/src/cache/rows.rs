@@ -7,9 +7,9 @@ use super::staleness::{BeamState, GroupState};
 use crate::belief::Belief;
 use crate::evaluator::Evaluator;
 use crate::numbers::as_f64;
-use crate::outcomes::{AskedRow, GroupBeam};
+use crate::outcomes::{AskedRow, BeamAnswer, GroupBeam};
 use crate::sight::{GroupLikelihood, RasterBeam};
-use covmap::lanes::{LANES, Lanes};
+use covmap::lanes::LANES;
 use pulp::{Simd, WithSimd};
 
 /// Brings sight and reasons of a row's groups up to date.
@@ -107,7 +107,7 @@ pub(super) struct RefreshBounds<'a> {
     pub(super) wanted: &'a [u16],
     pub(super) groups: &'a mut [GroupState],
     pub(super) states: &'a mut [BeamState],
-    pub(super) gain: &'a mut [Lanes],
+    pub(super) answers: &'a mut [BeamAnswer],
     pub(super) mean: &'a mut [[f64; LANES]],
     pub(super) likelihood: &'a mut GroupLikelihood,
 }
@@ -117,15 +117,25 @@ impl WithSimd for RefreshBounds<'_> {
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, _: S) {
-        let Self { beams, belief, evaluator, here, wanted, groups, states, gain, mean, likelihood } =
-            self;
+        let Self {
+            beams,
+            belief,
+            evaluator,
+            here,
+            wanted,
+            groups,
+            states,
+            answers,
+            mean,
+            likelihood,
+        } = self;
         let count = beams.len();
         let stale = |i: &usize| wanted[*i] & !groups[*i].bound != 0;
         let all: Vec<usize> = (0..wanted.len()).filter(stale).collect();
         for (number, beam) in beams.iter().enumerate() {
             for &i in &all {
-                let (state, gain) =
-                    (&mut states[i * count + number], &mut gain[i * count + number]);
+                let (state, kept) =
+                    (&mut states[i * count + number], &mut answers[i * count + number]);
                 if wanted[i] & !state.bound == 0 {
                     continue;
                 }
@@ -134,13 +144,15 @@ impl WithSimd for RefreshBounds<'_> {
                 let bound = evaluator.bound(belief, (number, beam), here, likelihood);
                 for lane in 0..LANES {
                     let exact = state.gain >> lane & 1 == 1;
-                    gain[lane] = if exact { gain[lane] } else { bound[lane] };
+                    kept.gain[lane] = if exact { kept.gain[lane] } else { bound.gain[lane] };
+                    kept.promise[lane] =
+                        if exact { kept.promise[lane] } else { bound.promise[lane] };
                 }
                 state.bound |= wanted[i];
             }
         }
         for i in all {
-            mean[i] = average(&gain[i * count..(i + 1) * count]);
+            mean[i] = average(&answers[i * count..(i + 1) * count]);
             up_to_date(&mut groups[i], &states[i * count..(i + 1) * count]);
         }
     }
@@ -153,12 +165,12 @@ pub(super) fn up_to_date(group: &mut GroupState, states: &[BeamState]) {
 }
 
 /// The average over the beams, of each view-point of a group.
-pub(super) fn average(gains: &[Lanes]) -> [f64; LANES] {
+pub(super) fn average(answers: &[BeamAnswer]) -> [f64; LANES] {
     let mut sum = [0.0; LANES];
-    for gains in gains {
+    for answer in answers {
         for lane in 0..LANES {
-            sum[lane] += f64::from(gains[lane]);
+            sum[lane] += f64::from(answer.gain[lane]);
         }
     }
-    sum.map(|gain| gain / as_f64(gains.len()))
+    sum.map(|gain| gain / as_f64(answers.len()))
 }

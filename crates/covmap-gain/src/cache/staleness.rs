@@ -64,7 +64,7 @@ impl BeamState {
                 (self.sight, self.reason, self.gain, self.bound) = (0, 0, 0, 0);
             }
             CellChange::Posterior => self.keep_gains(0),
-            CellChange::Limit => (self.reason, self.gain) = (0, 0),
+            CellChange::Limit => (self.reason, self.gain, self.bound) = (0, 0, 0),
         }
     }
 
@@ -79,7 +79,7 @@ impl GroupState {
         match change {
             CellChange::Reflection => (self.sight, self.gain, self.bound) = (0, 0, 0),
             CellChange::Posterior => self.keep_gains(0),
-            CellChange::Limit => (self.sight, self.gain) = (0, 0),
+            CellChange::Limit => (self.sight, self.gain, self.bound) = (0, 0, 0),
         }
     }
 

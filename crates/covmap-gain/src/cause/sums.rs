@@ -35,7 +35,7 @@ impl WithSimd for GainsOfRow<'_> {
             cells.clear(cause.beams[asked.beam].cells.len());
             group.sum::<true>(asked.beam, (outcomes, probabilities), &mut fronts, &mut cells);
             answers.push(BeamAnswer {
-                gain: cells.total().map(f64::from),
+                gain: cells.total(),
                 promise: group.promise(asked.beam, &cells, least),
             });
         }
@@ -90,13 +90,32 @@ pub(super) trait CellSums {
     fn add(&mut self, cell: usize, probability: &Lanes, gain: &Lanes);
 }
 
-/// All cells together.
-pub(super) struct AllCells(pub(super) Lanes);
+/// All cells together, and those that are reasons to measure.
+pub(super) struct AllAndReasons<'a> {
+    cells: &'a [CauseCell],
+    limits: &'a [f32],
+    /// The first view-point in the bordered rasters.
+    here: usize,
+    pub(super) answer: BeamAnswer,
+}
 
-impl CellSums for AllCells {
+impl<'a> AllAndReasons<'a> {
+    pub(super) fn of(cells: &'a [CauseCell], (limits, here): (&'a [f32], usize)) -> Self {
+        Self { cells, limits, here, answer: BeamAnswer::all(0.0, 0.0) }
+    }
+}
+
+impl CellSums for AllAndReasons<'_> {
     #[inline(always)]
-    fn add(&mut self, _: usize, probability: &Lanes, gain: &Lanes) {
-        add_product(&mut self.0, probability, gain);
+    fn add(&mut self, cell: usize, probability: &Lanes, gain: &Lanes) {
+        add_product(&mut self.answer.gain, probability, gain);
+        let cell = &self.cells[cell];
+        let limit = at(self.limits, self.here, cell);
+        let mut counts = [0.0; LANES];
+        for lane in 0..LANES {
+            counts[lane] = if cell.distance <= limit[lane] { probability[lane] } else { 0.0 };
+        }
+        add_product(&mut self.answer.promise, &counts, gain);
     }
 }
 

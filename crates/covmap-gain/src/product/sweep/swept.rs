@@ -2,6 +2,7 @@
 
 use super::planes::Layout;
 use super::sums::mix_outcomes;
+use crate::numbers::to_f32;
 use crate::outcomes::{AskedRow, BeamAnswer, GroupBeam, RowGains};
 use crate::product::tables::rings::DistanceRing;
 use covmap::lanes::{LANES, TOGETHER, add_product};
@@ -48,8 +49,10 @@ impl<'a> SweptRow<'a> {
 
     pub(super) fn gains(self) -> RowGains {
         // What a cell gains by all outcomes together stands nowhere: any may gain enough.
-        let answer =
-            |beam: SweptBeam| BeamAnswer { gain: beam.gain, promise: [f32::INFINITY; LANES] };
+        let answer = |beam: SweptBeam| BeamAnswer {
+            gain: beam.gain.map(to_f32),
+            promise: [f32::INFINITY; LANES],
+        };
         self.beams.into_iter().map(answer).collect()
     }
 }

@@ -1,0 +1,187 @@
+//! `beside`: runs of `explore` side by side, and what their scans and metres bought.
+
+use crate::arguments::Beside;
+use crate::figures::Output;
+use crate::say;
+use anyhow::{Result, bail};
+use covmap_io::{Chart, ChartAxis, ChartPoint, Figure, Series, read_json};
+use serde::Deserialize;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// What is read of a `summary.json`.
+#[derive(Deserialize)]
+struct Summary {
+    world: String,
+    strategy: String,
+    seed: u64,
+    resolution: f64,
+    scans: u32,
+    path_length_m: f64,
+    completeness: f64,
+    measured: Classes,
+}
+
+/// How well the cells that were measured are explained.
+#[derive(Deserialize)]
+struct Classes {
+    free: Class,
+    partial: Class,
+    solid: Class,
+}
+
+/// A class without a cell has no numbers.
+#[derive(Deserialize)]
+struct Class {
+    log_likelihood: Option<f64>,
+    error_of_mode: Option<f64>,
+    found: Option<f64>,
+}
+
+/// One run.
+struct Row {
+    name: String,
+    summary: Summary,
+}
+
+pub(crate) fn run(arguments: &Beside) -> Result<ExitCode> {
+    let rows = arguments.runs.iter().map(|dir| Row::read(dir)).collect::<Result<Vec<_>>>()?;
+    let output = Output::create(&arguments.out, arguments.force.replace())?;
+    let table: Vec<Vec<String>> = rows.iter().map(Row::fields).collect();
+    let quoted = |row: &Vec<String>| row.iter().map(|field| quoted(field)).collect();
+    output.table("runs", &COLUMNS, &table.iter().map(quoted).collect::<Vec<_>>())?;
+    output.figure("runs", &figure(&rows))?;
+    if !arguments.quiet {
+        aligned(&table).into_iter().for_each(say::line);
+        say::line(output.dir().display());
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+const COLUMNS: [&str; 11] = [
+    "run",
+    "world",
+    "r_m",
+    "strategy",
+    "seed",
+    "scans",
+    "path_m",
+    "completeness",
+    "class_mean",
+    "error_partial",
+    "walls_found",
+];
+
+impl Row {
+    fn read(dir: &Path) -> Result<Self> {
+        let summary = dir.join("summary.json");
+        if !summary.is_file() {
+            bail!("{}: no summary.json; name folders that `explore` wrote", dir.display());
+        }
+        let name = dir.file_name().unwrap_or(dir.as_os_str()).to_string_lossy();
+        Ok(Self { name: name.into_owned(), summary: read_json(summary)? })
+    }
+
+    /// The mean of the log-likelihoods of the three classes, of those that there are \[nats\].
+    fn class_mean(&self) -> Option<f64> {
+        let Classes { free, partial, solid } = &self.summary.measured;
+        let there: Vec<f64> =
+            [free, partial, solid].iter().filter_map(|c| c.log_likelihood).collect();
+        #[allow(clippy::cast_precision_loss, reason = "at most 3")]
+        let mean = there.iter().sum::<f64>() / there.len() as f64;
+        (!there.is_empty()).then_some(mean)
+    }
+
+    fn fields(&self) -> Vec<String> {
+        let Summary {
+            world, strategy, seed, resolution, scans, path_length_m, completeness, ..
+        } = &self.summary;
+        let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.3}"));
+        vec![
+            self.name.clone(),
+            world.clone(),
+            resolution.to_string(),
+            strategy.clone(),
+            seed.to_string(),
+            scans.to_string(),
+            format!("{path_length_m:.0}"),
+            format!("{completeness:.3}"),
+            number(self.class_mean()),
+            number(self.summary.measured.partial.error_of_mode),
+            number(self.summary.measured.solid.found),
+        ]
+    }
+
+    /// Runs that differ in how often COUNT scans are one series.
+    fn series(&self) -> String {
+        let Summary { strategy, .. } = &self.summary;
+        let counts = strategy.starts_with("COUNT(");
+        if counts { "COUNT".into() } else { strategy.clone() }
+    }
+}
+
+/// Every field as CSV has it.
+fn quoted(field: &str) -> String {
+    let plain = !field.contains([',', '"', '\n', '\r']);
+    if plain { field.to_owned() } else { format!("\"{}\"", field.replace('"', "\"\"")) }
+}
+
+/// The table for the terminal: columns as wide as their longest field.
+fn aligned(rows: &[Vec<String>]) -> Vec<String> {
+    let header: Vec<String> = COLUMNS.iter().map(ToString::to_string).collect();
+    let all: Vec<&Vec<String>> = std::iter::once(&header).chain(rows).collect();
+    let width =
+        |column: usize| all.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: Vec<usize> = (0..COLUMNS.len()).map(width).collect();
+    let line = |row: &&Vec<String>| {
+        let fields = row.iter().zip(&widths).map(|(field, width)| format!("{field:<width$}"));
+        fields.collect::<Vec<_>>().join("  ").trim_end().to_owned()
+    };
+    all.iter().map(line).collect()
+}
+
+fn figure(rows: &[Row]) -> Figure {
+    let panel = |title: &str, y: &str, of: &dyn Fn(&Row) -> Option<f64>| {
+        let of_x = |label: &str, x: &dyn Fn(&Row) -> f64| Chart {
+            title: title.into(),
+            subtitle: String::new(),
+            x: ChartAxis::new(label),
+            y: ChartAxis::new(y),
+            series: series(rows, |row| Some((x(row), of(row)?))),
+        };
+        let scans = of_x("scans", &|row| f64::from(row.summary.scans));
+        [scans, of_x("driven [m]", &|row| row.summary.path_length_m)]
+    };
+    let panels = [
+        panel(
+            "How well the map explains the truth",
+            "class mean of the log-likelihood [nats]",
+            &|row| row.class_mean(),
+        ),
+        panel("Walls that are found", "share of the first layer", &|row| {
+            row.summary.measured.solid.found
+        }),
+    ];
+    Figure {
+        title: "What scans and metres buy".into(),
+        subtitle: format!("{} runs; a line joins those of one strategy", rows.len()),
+        panels: panels.into_iter().flatten().map(Into::into).collect(),
+        columns: 2,
+    }
+}
+
+/// A line for each strategy, in the order in which they are first named.
+fn series(rows: &[Row], point: impl Fn(&Row) -> Option<(f64, f64)>) -> Vec<Series> {
+    let mut all: Vec<Series> = Vec::new();
+    for row in rows {
+        let Some((x, y)) = point(row) else { continue };
+        let name = row.series();
+        let at = all.iter().position(|series| series.name == name).unwrap_or_else(|| {
+            all.push(Series { name, line: true, marks: true, ..Series::default() });
+            all.len() - 1
+        });
+        all[at].points.push(ChartPoint::new(x, y));
+    }
+    all.iter_mut().for_each(|series| series.points.sort_by(|a, b| a.x.total_cmp(&b.x)));
+    all
+}
