@@ -4,7 +4,7 @@ use crate::explain::reason;
 use crate::pictures::certain_coverage;
 use crate::replay::Moment;
 use covmap::{Cell, CoverageMap, Grid, Raster};
-use covmap_io::{ColorMap, Key, Marker, Picture, Rgb};
+use covmap_draw::{ColorMap, Key, Marker, Picture, Rgb};
 use nalgebra::Point2;
 
 /// How much of the map is seen through the gains.

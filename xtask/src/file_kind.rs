@@ -1,7 +1,7 @@
 //! What a file is that was given as a world and is none, and what reads it.
 
 use anyhow::{Error, anyhow};
-use covmap_io::log::is_of_a_log;
+use covmap_log::is_of_a_log;
 use covmap_io::{Signature, read_beginning, read_ron, signature};
 use serde::Deserialize;
 use serde::de::IgnoredAny;

@@ -7,7 +7,7 @@ use crate::trace_file::{self, read_header};
 use crate::{output, say};
 use anyhow::Result;
 use covmap_explore::{Event, TraceHeader};
-use covmap_io::log::{CarmenWriter, CarmenWriterError};
+use covmap_log::{CarmenWriter, CarmenWriterError};
 use covmap_io::{FileError, NewFile, read_json_lines};
 use covmap_sonar::SonarRing;
 use std::path::Path;

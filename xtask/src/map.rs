@@ -10,7 +10,7 @@ use crate::{input, map_report, memory, output, results};
 use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_explore::Config;
-use covmap_io::log::{LogOptions, Readings, Sensor, SensorAccount, Skipped};
+use covmap_log::{LogOptions, Readings, Sensor, SensorAccount, Skipped};
 use covmap_io::{MapCounts, OutputFolder, write_json};
 use covmap_model::{Footprint, FootprintRule, SensorModel};
 use covmap_plan::BodyEvidence;

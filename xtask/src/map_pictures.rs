@@ -4,7 +4,7 @@ use crate::map::MapSummary;
 use crate::mapper::Mapper;
 use crate::pictures::{draw_coverage, draw_entropy, draw_occupancy, draw_path};
 use covmap::CoverageMap;
-use covmap_io::Picture;
+use covmap_draw::Picture;
 use nalgebra::Point2;
 
 /// All that the pictures show.

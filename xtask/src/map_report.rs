@@ -5,7 +5,7 @@ use crate::map::MapSummary;
 use crate::mapper::Survey;
 use crate::{csv_file, say};
 use anyhow::Result;
-use covmap_io::log::{Account, Readings, SensorAccount};
+use covmap_log::{Account, Readings, SensorAccount};
 use std::io::Write;
 use std::path::Path;
 

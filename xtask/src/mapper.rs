@@ -6,7 +6,7 @@ use crate::trail::Trail;
 use crate::way::{Follower, Leg};
 use anyhow::{Result, anyhow, bail};
 use covmap::{CoverageMap, Grid, GridError};
-use covmap_io::log::{Account, LogError, LogFrame, LogOptions, LogReader, Sensor};
+use covmap_log::{Account, LogError, LogFrame, LogOptions, LogReader, Sensor};
 use covmap_model::{Looks, OccupancyGrid, OccupancyParameters, SensorModel, integrate_body};
 use covmap_sonar::SonarRing;
 use nalgebra::{Isometry2, Point2, Vector2};

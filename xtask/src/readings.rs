@@ -14,7 +14,7 @@ use crate::{csv_file, output, say};
 use anyhow::{Result, bail};
 use covmap_explore::Config;
 use covmap_fit::{SearchSettings, maximise};
-use covmap_io::log::Sensor;
+use covmap_log::Sensor;
 use covmap_io::{read_ron, write_ron};
 use covmap_sonar::{Range, Scan, SonarRing};
 use covmap_world::survey::Survey;

@@ -8,7 +8,7 @@ use anyhow::{Result, bail};
 use covmap::{CoverageMap, Raster};
 use covmap_explore::Config;
 use covmap_fit::{BodyRecord, Example};
-use covmap_io::log::{Account, LogOptions, LogReader, Sensor};
+use covmap_log::{Account, LogOptions, LogReader, Sensor};
 use covmap_io::read_ron;
 use covmap_model::integrate_body;
 use covmap_sonar::{Scan, SonarRing};

@@ -1,6 +1,6 @@
 //! The way of a robot from frame to frame of a log: what it drove, and what nobody knows.
 
-use covmap_io::log::{LogFrame, Passed};
+use covmap_log::{LogFrame, Passed};
 use nalgebra::{Isometry2, Point2, Vector2};
 
 /// A path is followed in steps of at least this \[m\]: less is the trembling of a robot that

@@ -182,7 +182,7 @@ impl FileError {
     }
 
     /// Turns the refusal of the operating system into an error that names the file.
-    pub(crate) fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self {
+    pub fn io(path: &Path, action: &'static str) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_path_buf();
         move |reason| Self::Io { path, action, reason }
     }

@@ -23,7 +23,10 @@ pub fn open_input(path: impl AsRef<Path>) -> Result<File, FileError> {
 
 /// As [`open_input`], with the error of the system; [`io::ErrorKind::Other`] means that it is no
 /// file.
-pub(crate) fn open_file(path: &Path) -> io::Result<File> {
+///
+/// # Errors
+/// If there is no such file, or it is none that can be read.
+pub fn open_file(path: &Path) -> io::Result<File> {
     check(std::fs::metadata(path)?.file_type())?;
     let file = at_once().read(true).open(path)?;
     check(file.metadata()?.file_type())?;

@@ -250,7 +250,7 @@ fn what_is_not_there_is_missed() {
         "covmap_plan::StrategyError",
         "covmap_plan::PlannerParameters::scan_spacing",
         "covmap_explore::Robot::drive",
-        "covmap_io::log::LogReader",
+        "covmap_log::LogReader",
         "covmap_model::integrate",
         "covmap::Steps",
     ] {
@@ -269,7 +269,7 @@ fn what_is_not_there_is_missed() {
         "covmap_plan::Planner::take_over",
         "covmap_gain::product::bounds",
         "covmap_gain::product::bound::NoSuchThing",
-        "covmap_io::log::Fields",
+        "covmap_log::Fields",
     ] {
         assert!(found(path).is_err(), "{path}");
     }

@@ -12,7 +12,7 @@ use crate::figures::Output;
 use crate::say;
 use anyhow::{Context, Result};
 use covmap_explore::{Config, Limits, Mission};
-use covmap_io::{Chart, ChartAxis, ChartPoint, Figure, Panel, Series};
+use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Panel, Series};
 use covmap_model::Update;
 use std::fmt::{self, Display, Formatter};
 use std::path::Path;

@@ -3,7 +3,7 @@
 use super::output::Output;
 use super::partial_cells::{COVERAGE, MEASUREMENTS, PartialCell, spread};
 use anyhow::Result;
-use covmap_io::{Chart, ChartAxis, ChartPoint, Figure, Series};
+use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 
 /// Error bars stand at every so many measurements.
 const BARS: usize = 10;

@@ -4,7 +4,7 @@ use super::output::Output;
 use super::partial_cells::{COVERAGE, FIG_2, PartialCell, spread};
 use anyhow::Result;
 use covmap::bin_coverage;
-use covmap_io::{Chart, ChartAxis, ChartPoint, Figure, Series};
+use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 
 /// Draws the figure for one or more configurations, each with its name.
 pub(crate) fn write(output: &Output, configs: &[(&str, &[PartialCell])]) -> Result<()> {

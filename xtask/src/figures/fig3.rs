@@ -4,7 +4,7 @@ use super::output::Output;
 use crate::model;
 use anyhow::Result;
 use covmap::bin_coverage;
-use covmap_io::{ChartAxis, ColorMap, Figure, HeatMap};
+use covmap_draw::{ChartAxis, ColorMap, Figure, HeatMap};
 use covmap_model::{Outcome, SensorModel};
 
 /// The measured range of the figure \[m\].

@@ -10,7 +10,7 @@ use crate::paper::session::Series;
 use crate::pictures::Pictures;
 use anyhow::{Result, bail};
 use covmap_explore::{CutOff, Mission, Run, SimulatedRobot, Summary, Truth, explore};
-use covmap_io::Picture;
+use covmap_draw::Picture;
 use covmap_plan::Strategy;
 use covmap_world::World;
 use nalgebra::Point2;

@@ -6,7 +6,7 @@ use crate::paper::crossing::{Point, curve};
 use crate::paper::runs::{Run, Runs};
 use anyhow::Result;
 use covmap_explore::statistics::Estimate;
-use covmap_io::{Chart, ChartAxis, ChartPoint, Figure, Series};
+use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 use covmap_plan::Strategy;
 
 /// Draws the figure for one or more configurations, each with its runs.

@@ -6,7 +6,7 @@ use crate::campaign::{PARAMETERS, RunKey, load_paths, parameters};
 use crate::paper::runs::Runs;
 use crate::paper::session::Series as Campaigned;
 use anyhow::Result;
-use covmap_io::{Chart, ChartAxis, ChartPoint, Figure, Series};
+use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 use covmap_plan::Strategy;
 
 /// The charts of Fig. 7: a metric, and what it is called.

@@ -7,7 +7,8 @@ use crate::pictures::mark_cut_short;
 use anyhow::Result;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use covmap_io::{Key, Marker, Picture, Rgb, coverage_color, read_ron};
+use covmap_draw::{Key, Marker, Picture, Rgb, coverage_color};
+use covmap_io::read_ron;
 use covmap_world::{Surface, World};
 use nalgebra::Point2;
 

@@ -1,7 +1,8 @@
 //! Where figures and tables go.
 
 use anyhow::Result;
-use covmap_io::{Drawing, Figure, FileError, Replace, SharedFolder};
+use covmap_draw::{Drawing, Figure};
+use covmap_io::{FileError, Replace, SharedFolder};
 use std::io;
 use std::path::{Path, PathBuf};
 

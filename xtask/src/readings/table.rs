@@ -1,6 +1,6 @@
 //! How often readings are right, too short, too long, or missing, by true distance.
 
-use covmap_io::{Chart, ChartAxis, ChartPoint, Figure, Series};
+use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 use covmap_sonar::Range;
 
 /// A reading this near to the truth is right \[m\].

@@ -6,7 +6,7 @@ use super::style::{
     pale,
 };
 use covmap_gain::StencilCell;
-use covmap_io::{Drawing, Rgb, TextAnchor};
+use covmap_draw::{Drawing, Rgb, TextAnchor};
 
 const WIDTH: f64 = 1040.0;
 const LEFT: f64 = 64.0;

@@ -7,7 +7,7 @@ use super::style::{
 };
 use anyhow::{Context, Result};
 use covmap_gain::{GAIN_TOLERANCE, NEGLIGIBLE, TableErrors};
-use covmap_io::{Drawing, Rgb, TextAnchor};
+use covmap_draw::{Drawing, Rgb, TextAnchor};
 use rayon::ThreadPoolBuilder;
 
 const WIDTH: f64 = 1060.0;

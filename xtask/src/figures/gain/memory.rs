@@ -6,7 +6,7 @@ use super::style::{
 };
 use anyhow::{Context, Result};
 use covmap_gain::{MemoryLayout, PlaneLayout};
-use covmap_io::{Drawing, Rgb, TextAnchor};
+use covmap_draw::{Drawing, Rgb, TextAnchor};
 
 const WIDTH: f64 = 1060.0;
 const LEFT: f64 = 18.0;

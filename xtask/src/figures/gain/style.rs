@@ -1,6 +1,6 @@
 //! Colours and small helpers that the drawings share.
 
-use covmap_io::{Drawing, Rgb, TextAnchor};
+use covmap_draw::{Drawing, Rgb, TextAnchor};
 
 /// Of the palette of Okabe and Ito, which the colour-blind tell apart, too.
 pub(super) const BLUE: Rgb = Rgb(0, 114, 178);

@@ -14,7 +14,8 @@ mod scale;
 mod scene;
 mod svg;
 
-use crate::{ColorMap, FileError, Replace, write_file};
+use crate::ColorMap;
+use covmap_io::{FileError, Replace, write_file};
 pub use drawing::{Drawing, TextAnchor};
 use std::io;
 use std::path::Path;
@@ -25,7 +26,7 @@ use std::path::Path;
 /// values that are not positive on a logarithmic axis; a chart without points says so.
 ///
 /// ```
-/// use covmap_io::{Chart, ChartAxis, ChartPoint, Series};
+/// use covmap_draw::{Chart, ChartAxis, ChartPoint, Series};
 ///
 /// let errors = [(1.0, 0.062, 0.055, 0.071), (2.0, 0.041, 0.037, 0.046)];
 /// let point = |(x, y, low, high)| ChartPoint { low, high, ..ChartPoint::new(x, y) };

@@ -1,7 +1,7 @@
 //! The lines of a text file, plain or packed, and never too much of them.
 
 use super::{LogError, foreign};
-use crate::read::open_file;
+use covmap_io::open_file;
 use flate2::read::MultiGzDecoder;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};

@@ -3,7 +3,7 @@
 use super::Marker;
 use super::color::Rgb;
 use super::text::text_path;
-use crate::{FileError, Replace, write_file};
+use covmap_io::{FileError, Replace, write_file};
 use std::io;
 use tiny_skia::{
     FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Pixmap, PixmapPaint, Rect, Stroke,

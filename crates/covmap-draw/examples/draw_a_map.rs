@@ -1,11 +1,11 @@
 //! Draws a small office as a robot might know it: coverage, where it drove, what is left.
 //!
 //! ```text
-//! cargo run -p covmap-io --example draw_a_map -- office.png
+//! cargo run -p covmap-draw --example draw_a_map -- office.png
 //! ```
 
 use covmap::{Grid, Raster};
-use covmap_io::{Key, Marker, Picture, Rgb, coverage_color};
+use covmap_draw::{Key, Marker, Picture, Rgb, coverage_color};
 use nalgebra::Point2;
 use std::process::ExitCode;
 

@@ -9,7 +9,7 @@ pub(crate) mod text;
 
 pub use color::{ColorMap, Rgb, coverage_color};
 
-use crate::FileError;
+use covmap_io::FileError;
 use covmap::{Grid, Raster};
 use nalgebra::Point2;
 use std::io;
@@ -69,7 +69,7 @@ struct ColorBar {
 ///
 /// ```no_run
 /// use covmap::{Grid, Raster};
-/// use covmap_io::{Key, Marker, Picture, Rgb, coverage_color};
+/// use covmap_draw::{Key, Marker, Picture, Rgb, coverage_color};
 /// use nalgebra::Point2;
 ///
 /// let grid = Grid::new(Point2::origin(), 0.1, 200, 120)?;

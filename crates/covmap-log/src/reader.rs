@@ -80,7 +80,7 @@ enum Source {
 /// `Missing`. The longest range is what the log states; where it states several, the smallest.
 ///
 /// ```no_run
-/// use covmap_io::log::{LogOptions, LogReader, Sensor};
+/// use covmap_log::{LogOptions, LogReader, Sensor};
 /// use covmap_sonar::SonarRing;
 ///
 /// let options = LogOptions { sensor: Sensor::Sonar, ring: SonarRing::b21r(), poses: None };
@@ -90,7 +90,7 @@ enum Source {
 ///     println!("{} s: {:?}", frame.scan.time, frame.scan.ranges);
 /// }
 /// println!("{}", log.skipped());
-/// # Ok::<(), covmap_io::log::LogError>(())
+/// # Ok::<(), covmap_log::LogError>(())
 /// ```
 pub struct LogReader {
     source: Source,

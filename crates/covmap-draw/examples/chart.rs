@@ -5,11 +5,12 @@
 //! every reading is multiplied into a histogram of their coverage.
 //!
 //! ```text
-//! cargo run -p covmap-io --example chart -- DIR
+//! cargo run -p covmap-draw --example chart -- DIR
 //! ```
 
 use covmap::{Histogram, bin_coverage, product};
-use covmap_io::{Chart, ChartAxis, ChartPoint, ColorMap, Figure, FileError, HeatMap, Series};
+use covmap_draw::{Chart, ChartAxis, ChartPoint, ColorMap, Figure, HeatMap, Series};
+use covmap_io::FileError;
 use std::path::Path;
 use std::process::ExitCode;
 

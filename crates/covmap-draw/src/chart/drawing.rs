@@ -26,7 +26,7 @@ pub enum TextAnchor {
 /// above the earlier. The same calls make the same bytes.
 ///
 /// ```
-/// use covmap_io::{Drawing, Rgb, TextAnchor};
+/// use covmap_draw::{Drawing, Rgb, TextAnchor};
 ///
 /// let mut drawing = Drawing::new("A wall", "seen from above", [300.0, 120.0]);
 /// let top = drawing.top();

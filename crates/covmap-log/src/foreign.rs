@@ -1,7 +1,7 @@
 //! Files that people take for logs: what they are, and what reads them.
 
 use super::carmen_line::TAGS;
-use crate::{Signature, signature};
+use covmap_io::{Signature, signature};
 use std::path::Path;
 
 const ROSBAG: &str = "a bag of ROS 1, which `rosbag` and the Python package `rosbags` read; write its \
