@@ -17,7 +17,7 @@ use covmap_fit::{SearchSettings, maximise};
 use covmap_log::Sensor;
 use covmap_io::{read_ron, write_ron};
 use covmap_sonar::{Range, Scan, SonarRing};
-use covmap_world::survey::Survey;
+use covmap_survey::Survey;
 use covmap_world::{Surface, World, stream};
 use knobs::KNOBS;
 use nalgebra::{Isometry2, Point2, Translation2};

@@ -12,7 +12,7 @@ use covmap_log::{Account, LogOptions, LogReader, Sensor};
 use covmap_io::read_ron;
 use covmap_model::integrate_body;
 use covmap_sonar::{Scan, SonarRing};
-use covmap_world::survey::{Survey, SurveyParameters};
+use covmap_survey::{Survey, SurveyParameters};
 use covmap_world::{Surface, World};
 use nalgebra::{Point2, Vector2};
 use serde::Deserialize;

@@ -11,7 +11,7 @@ use covmap_log::Sensor;
 use covmap_draw::{Marker, Picture, Rgb, coverage_color};
 use covmap_io::{to_ron, write_file};
 use covmap_sonar::{Range, SonarRing};
-use covmap_world::survey::{Evidence, Survey, SurveyParameters, survey};
+use covmap_survey::{Evidence, Survey, SurveyParameters, survey};
 use nalgebra::Point2;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

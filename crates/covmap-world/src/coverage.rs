@@ -32,16 +32,19 @@ impl World {
 }
 
 /// What is solid: outlines, and everything outside of bounds, which may be infinite.
-pub(crate) struct Solids<'a> {
-    pub(crate) outlines: &'a [Outline],
-    pub(crate) bounds: Bounds,
+#[derive(Debug)]
+pub struct Solids<'a> {
+    /// What is solid.
+    pub outlines: &'a [Outline],
+    /// Outside of it all is solid.
+    pub bounds: Bounds,
     /// Whether no two outlines overlap.
-    pub(crate) disjoint: bool,
+    pub disjoint: bool,
 }
 
 impl Solids<'_> {
     /// The exact coverage of every cell of a grid.
-    pub(crate) fn coverage(&self, grid: &Grid) -> Raster<f64> {
+    pub fn coverage(&self, grid: &Grid) -> Raster<f64> {
         #[allow(
             clippy::cast_possible_truncation,
             clippy::cast_possible_wrap,

@@ -1,4 +1,5 @@
-//! Faces, where they meet, and how to find them.
+//! Faces, where they meet, outlines and solids, and how to find them. For a world, and for who estimates
+//! one from measurements.
 
 mod exposed;
 mod face;
@@ -6,6 +7,9 @@ pub(crate) mod feature;
 mod index;
 
 pub(crate) use exposed::Exposed;
-pub(crate) use face::Face;
+pub use crate::coverage::Solids;
+pub use crate::outline::{Outline, outlines};
+pub use crate::sight::cells_along;
+pub use face::Face;
 pub(crate) use feature::{Feature, Kind};
-pub(crate) use index::{Bounds, Index};
+pub use index::{Bounds, Index};

@@ -22,14 +22,13 @@
 mod coverage;
 mod drive;
 mod error;
-mod geometry;
+pub mod geometry;
 mod moved;
 mod outline;
 mod raster_world;
 mod scenario;
 mod sight;
 mod sonar;
-pub mod survey;
 mod world;
 
 pub use drive::Drive;

@@ -20,15 +20,21 @@ const MANY_SIDES: usize = 128;
 
 /// A simple polygon, counter-clockwise, with at least three points.
 #[derive(Debug, Clone)]
-pub(crate) struct Outline {
-    pub(crate) points: Vec<Point2<f64>>,
-    pub(crate) surface: Surface,
+pub struct Outline {
+    /// Its corners \[m\].
+    pub points: Vec<Point2<f64>>,
+    /// What it is made of.
+    pub surface: Surface,
     bounds: Bounds,
     index: Option<Box<Index>>,
 }
 
 impl Outline {
-    pub(crate) fn new(points: Vec<Point2<f64>>, surface: Surface) -> Self {
+    /// The outline of some points, of which there are three at least.
+    ///
+    /// # Panics
+    /// If there is no point.
+    pub fn new(points: Vec<Point2<f64>>, surface: Surface) -> Self {
         let first = points[0];
         let around = |(low, high): Bounds, p: &Point2<f64>| (low.inf(p), high.sup(p));
         let bounds = points.iter().fold((first, first), around);
@@ -44,7 +50,8 @@ impl Outline {
         outline
     }
 
-    pub(crate) fn bounds(&self) -> Bounds {
+    /// The box around it.
+    pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
@@ -54,7 +61,7 @@ impl Outline {
     }
 
     /// The sides whose boxes meet a box.
-    pub(crate) fn sides_meeting(
+    pub fn sides_meeting(
         &self,
         (low, high): Bounds,
     ) -> impl Iterator<Item = (Point2<f64>, Point2<f64>)> + '_ {
@@ -73,7 +80,7 @@ impl Outline {
 
     /// Whether a point lies inside: the winding number of the sides around it, counted along
     /// a ray to the right.
-    pub(crate) fn holds(&self, point: Point2<f64>) -> bool {
+    pub fn holds(&self, point: Point2<f64>) -> bool {
         let (low, high) = self.bounds;
         if point.x < low.x || point.y < low.y || high.x < point.x || high.y < point.y {
             return false;
@@ -90,7 +97,10 @@ impl Outline {
 }
 
 /// The outlines of all obstacles of a scenario.
-pub(crate) fn outlines(obstacles: &[Obstacle]) -> Result<Vec<Outline>, WorldError> {
+///
+/// # Errors
+/// If an obstacle has an impossible number, or there are too many of them.
+pub fn outlines(obstacles: &[Obstacle]) -> Result<Vec<Outline>, WorldError> {
     if obstacles.len() > MAX_OBSTACLES {
         return Err(WorldError::TooManyObstacles(obstacles.len()));
     }

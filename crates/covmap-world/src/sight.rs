@@ -236,7 +236,7 @@ impl Eye<'_> {
 }
 
 /// Visits the cells of a grid along a ray, as long as it stays in the grid.
-pub(crate) fn cells_along(
+pub fn cells_along(
     grid: &Grid,
     origin: Point2<f64>,
     direction: Vector2<f64>,

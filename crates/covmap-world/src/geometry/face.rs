@@ -9,37 +9,43 @@ const BEHIND: f64 = 1e-9;
 
 /// One straight side of a solid, from `a` to `b` with the solid on its left.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Face {
-    pub(crate) a: Point2<f64>,
-    pub(crate) b: Point2<f64>,
+pub struct Face {
+    /// Where it begins \[m\].
+    pub a: Point2<f64>,
+    /// Where it ends \[m\].
+    pub b: Point2<f64>,
     /// Unit vector from a to b.
-    pub(crate) along: Vector2<f64>,
-    pub(crate) length: f64,
-    pub(crate) surface: Surface,
+    pub along: Vector2<f64>,
+    /// From a to b \[m\].
+    pub length: f64,
+    /// What it is made of.
+    pub surface: Surface,
 }
 
 impl Face {
-    pub(crate) fn new(a: Point2<f64>, b: Point2<f64>, surface: Surface) -> Self {
+    /// The face from `a` to `b`, which differ.
+    pub fn new(a: Point2<f64>, b: Point2<f64>, surface: Surface) -> Self {
         let length = (b - a).norm();
         Self { a, b, along: (b - a) / length, length, surface }
     }
 
     /// Unit normal into the free space, to the right of a → b.
-    pub(crate) fn normal(&self) -> Vector2<f64> {
+    pub fn normal(&self) -> Vector2<f64> {
         Vector2::new(self.along.y, -self.along.x)
     }
 
-    pub(crate) fn bounds(&self) -> Bounds {
+    /// The box around it.
+    pub fn bounds(&self) -> Bounds {
         (self.a.inf(&self.b), self.a.sup(&self.b))
     }
 
     /// How far a point is before the face's line \[m\]; negative behind it.
-    pub(crate) fn height(&self, point: Point2<f64>) -> f64 {
+    pub fn height(&self, point: Point2<f64>) -> f64 {
         (point - self.a).dot(&self.normal())
     }
 
     /// The point of the face that is nearest to a point.
-    pub(crate) fn nearest(&self, point: Point2<f64>) -> Point2<f64> {
+    pub fn nearest(&self, point: Point2<f64>) -> Point2<f64> {
         let s = (point - self.a).dot(&self.along);
         if s <= 0.0 {
             self.a
@@ -54,7 +60,7 @@ impl Face {
     ///
     /// Both ends belong to the face and are judged by the same expression as those of its
     /// neighbours, so that no ray slips between two faces.
-    pub(crate) fn entered_at(&self, origin: Point2<f64>, direction: Vector2<f64>) -> Option<f64> {
+    pub fn entered_at(&self, origin: Point2<f64>, direction: Vector2<f64>) -> Option<f64> {
         let (to_a, to_b) = (self.a - origin, self.b - origin);
         let (side_a, side_b) = (direction.perp(&to_a), direction.perp(&to_b));
         // From outside, a is on the left of the ray and b on its right.

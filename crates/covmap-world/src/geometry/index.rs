@@ -13,19 +13,20 @@ use std::cell::Cell;
 /// Boxes are widened by this share of the farthest coordinate.
 const WIDENING: f64 = 1e-6;
 
+/// Boxes, to be found by where they are.
 #[derive(Debug, Clone)]
-pub(crate) struct Index {
+pub struct Index {
     tree: Bvh,
     origin: Point2<f64>,
     widening: f64,
 }
 
 /// The corners of a box \[m\].
-pub(crate) type Bounds = (Point2<f64>, Point2<f64>);
+pub type Bounds = (Point2<f64>, Point2<f64>);
 
 impl Index {
     /// An index of boxes, which are known by their place in the list.
-    pub(crate) fn new(origin: Point2<f64>, boxes: &[Bounds]) -> Self {
+    pub fn new(origin: Point2<f64>, boxes: &[Bounds]) -> Self {
         let reach = boxes.iter().flat_map(|(low, high)| [low - origin, high - origin]);
         let widening = WIDENING * (1.0 + reach.map(|v| v.amax()).fold(0.0, f64::max));
         let margin = Vector2::repeat(widening);
@@ -38,7 +39,7 @@ impl Index {
     }
 
     /// The members whose boxes meet a box.
-    pub(crate) fn meeting(&self, (low, high): Bounds) -> impl Iterator<Item = usize> + '_ {
+    pub fn meeting(&self, (low, high): Bounds) -> impl Iterator<Item = usize> + '_ {
         let (low, high) = (low - self.origin, high - self.origin);
         let meets = move |node: &BvhNode| {
             let (mins, maxs) = (double(node.mins()), double(node.maxs()));
@@ -49,7 +50,7 @@ impl Index {
 
     /// The member with the smallest cost below `limit`, where no cost is below the distance
     /// of the member's box along a ray.
-    pub(crate) fn first_along(
+    pub fn first_along(
         &self,
         origin: Point2<f64>,
         direction: Vector2<f64>,
@@ -71,7 +72,7 @@ impl Index {
 
     /// The member with the smallest cost below `limit`, where no cost is below the distance
     /// of the member's box from a point.
-    pub(crate) fn nearest_to(
+    pub fn nearest_to(
         &self,
         point: Point2<f64>,
         limit: f64,

@@ -10,4 +10,3 @@ mod raster;
 mod scenarios;
 mod sight;
 mod sonar;
-mod survey;

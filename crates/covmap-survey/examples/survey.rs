@@ -2,7 +2,7 @@
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
-use covmap_world::survey::{SurveyParameters, survey};
+use covmap_survey::{SurveyParameters, survey};
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use nalgebra::{Isometry2, Vector2};
 use std::f64::consts::PI;

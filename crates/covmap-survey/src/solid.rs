@@ -2,10 +2,10 @@
 
 use super::line::Line;
 use super::{Post, Side, Survey, WallSegment};
-use crate::coverage::Solids;
-use crate::error::WorldError;
-use crate::outline::{Outline, outlines};
-use crate::scenario::{Extent, Obstacle, Scenario, Shape, Surface};
+use covmap_world::geometry::Solids;
+use covmap_world::WorldError;
+use covmap_world::geometry::{Outline, outlines};
+use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface};
 use covmap::{Grid, Raster};
 use nalgebra::{Point2, Vector2};
 

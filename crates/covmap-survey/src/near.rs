@@ -2,9 +2,8 @@
 
 use super::Survey;
 use super::line::Line;
-use crate::error::WorldError;
-use crate::geometry::{Bounds, Face, Index};
-use crate::outline::Outline;
+use covmap_world::WorldError;
+use covmap_world::geometry::{Bounds, Face, Index, Outline};
 use nalgebra::{Point2, Vector2};
 
 /// What an echo can come from.

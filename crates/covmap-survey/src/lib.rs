@@ -33,8 +33,8 @@ mod wall;
 pub use evidence::Evidence;
 pub use parameters::SurveyParameters;
 
-use crate::error::WorldError;
-use crate::scenario::Shape;
+use covmap_world::WorldError;
+use covmap_world::Shape;
 use covmap_sonar::{Scan, SonarRing};
 use nalgebra::Point2;
 use near::Near;

@@ -3,8 +3,8 @@
 use super::near::Near;
 use super::view::{axis, is_pose};
 use super::{Survey, SurveyParameters};
-use crate::error::WorldError;
-use crate::sight::cells_along;
+use covmap_world::WorldError;
+use covmap_world::geometry::cells_along;
 use covmap::{Grid, Raster};
 use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Point2, Vector2};

@@ -2,7 +2,7 @@
 
 use covmap::{Cell, Grid};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
-use covmap_world::survey::{
+use covmap_survey::{
     Evidence, Post, Side, Survey, SurveyError, SurveyParameters, Surveyed, WallSegment, survey,
 };
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World, WorldError, stream};
