@@ -5,7 +5,8 @@ use covmap_explore::{
     Config, CutOff, Ending, Limits, Mission, Score, SimulatedRobot, Truth, explore,
 };
 use covmap_io::read_ron;
-use covmap_world::{Scenario, World, stream, uniform};
+use covmap_statistics::{stream, uniform};
+use covmap_world::{Scenario, World};
 use nalgebra::Vector2;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;

@@ -8,12 +8,12 @@ use crate::{csv_file, interrupt, output, say};
 use anyhow::{Result, bail};
 use covmap_explore::Config;
 use covmap_fit::{
-    Axis, BetaCounting, ComparisonSettings, Contender, Crm, Estimate, Example, LogOdds, Method,
+    Axis, BetaCounting, CellMean, ComparisonSettings, Contender, Crm, Example, LogOdds, Method,
     MethodParameter, Parameter, Row, TuneSettings, Update, compare, tune,
 };
 use covmap_io::{OutputFolder, write_json};
 use covmap_model::ModelParameters;
-use covmap_world::{stream, uniform};
+use covmap_statistics::{stream, uniform};
 use serde::Serialize;
 use std::io::Write;
 use std::process::ExitCode;
@@ -236,7 +236,7 @@ fn tell(direction: &Direction) {
         direction.checked_on.join(" + ")
     ));
     for row in &direction.rows {
-        let in_words = |estimate: &Estimate| match estimate.interval {
+        let in_words = |estimate: &CellMean| match estimate.interval {
             Some((low, high)) => format!("{:7.3} [{low:7.3}, {high:7.3}]", estimate.value),
             None => format!("{:7.3}                    ", estimate.value),
         };

@@ -1,8 +1,8 @@
 //! What a file is that was given as a world and is none, and what reads it.
 
 use anyhow::{Error, anyhow};
-use covmap_log::is_of_a_log;
 use covmap_io::{Signature, read_beginning, read_ron, signature};
+use covmap_log::is_of_a_log;
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::path::Path;

@@ -10,7 +10,7 @@ use anyhow::{Result, anyhow};
 use covmap_explore::Config;
 use covmap_fit::{Example, FitSettings, Fitted, SearchSettings, fit};
 use covmap_io::{OutputFolder, write_json, write_ron};
-use covmap_world::{stream, uniform};
+use covmap_statistics::{stream, uniform};
 use std::path::Path;
 use std::process::ExitCode;
 

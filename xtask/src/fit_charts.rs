@@ -1,7 +1,7 @@
 //! The charts of a fit: the way of the search, and the likelihood along each axis.
 
-use covmap_fit::{Evaluation, Parameter, Profile};
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
+use covmap_fit::{Evaluation, Parameter, Profile};
 use covmap_model::ModelParameters;
 
 /// The objective of every evaluation, and the best so far, search by search.

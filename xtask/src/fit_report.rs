@@ -3,11 +3,11 @@
 use crate::say;
 use anyhow::Result;
 use covmap::{CoverageMap, ReadOut};
-use covmap_explore::Spread;
 use covmap_fit::{
     Evaluation, Example, ExampleScore, Fitted, Profile, Reliability, Weighting, fit_read_out,
 };
 use covmap_model::{ModelError, ModelParameters};
+use covmap_statistics::Spread;
 use rayon::prelude::*;
 use serde::Serialize;
 use std::path::Path;

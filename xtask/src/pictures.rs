@@ -3,8 +3,8 @@
 use crate::explore::in_words;
 use anyhow::Result;
 use covmap::{Cell, CoverageMap, Raster};
-use covmap_explore::{Ending, Mission, Run, Summary, Truth};
 use covmap_draw::{ColorMap, Key, Marker, Picture, Rgb, coverage_color};
+use covmap_explore::{Ending, Mission, Run, Summary, Truth};
 use covmap_model::{OccupancyGrid, OccupancyParameters};
 use covmap_plan::CellStatus;
 use nalgebra::Point2;

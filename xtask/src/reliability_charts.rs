@@ -1,7 +1,7 @@
 //! Charts of whether a map knows how right it is.
 
-use covmap_fit::Reliability;
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Panel, Series};
+use covmap_fit::Reliability;
 
 /// A band with fewer cells is drawn hollow.
 const FEW: usize = 50;

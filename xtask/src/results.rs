@@ -8,7 +8,9 @@ use anyhow::Result;
 use covmap::{Cell, CoverageMap};
 use covmap_explore::{CutOff, Run, Summary, Truth};
 use covmap_fit::{ExampleScore, Reliability};
-use covmap_io::{MapCounts, MapThresholds, OutputFolder, Replace, save_map_server, write_file, write_json};
+use covmap_io::{
+    MapCounts, MapThresholds, OutputFolder, Replace, save_map_server, write_file, write_json,
+};
 use serde::Serialize;
 use std::path::PathBuf;
 

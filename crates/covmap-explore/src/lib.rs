@@ -36,7 +36,6 @@ mod robot;
 mod run;
 mod score;
 mod series;
-pub mod statistics;
 mod summary;
 mod trace;
 
@@ -48,6 +47,6 @@ pub use overridden::OverrideError;
 pub use robot::{RecordedRobot, Robot, SimulatedRobot};
 pub use run::{Ending, Run, View, explore};
 pub use score::{Score, Truth};
-pub use series::{Accuracy, Errors, Measurements, Spread, Tally, corners, drawn_starts};
+pub use series::{Accuracy, Errors, Measurements, Tally, corners, drawn_starts};
 pub use summary::{CellCounts, Summary};
 pub use trace::{Event, TRACE_VERSION, TraceHasher, TraceHeader};

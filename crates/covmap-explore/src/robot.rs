@@ -2,7 +2,8 @@
 
 use crate::{Config, ConfigError, Event};
 use covmap_sonar::{Range, SonarRing};
-use covmap_world::{Drive, SonarPhysics, World, stream};
+use covmap_statistics::stream;
+use covmap_world::{Drive, SonarPhysics, World};
 use nalgebra::{Isometry2, Point2};
 use std::collections::VecDeque;
 

@@ -1,7 +1,8 @@
 //! A map against the truth.
 
 use crate::{Mission, Run};
-use covmap::{Cell, CoverageMap, LIKELIHOOD_FLOOR, Raster, Steps, is_scored, log_likelihood};
+use covmap::{Cell, CoverageMap, Raster, Steps, is_scored};
+use covmap_statistics::{LIKELIHOOD_FLOOR, log_likelihood};
 use covmap_world::World;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};

@@ -1,9 +1,8 @@
 //! How well posteriors explain the truth, class by class.
 
 use crate::{ByClass, Class};
-use covmap::{
-    LIKELIHOOD_FLOOR, bin_coverage, central, crps, interval_holds, log_likelihood, mode_bin,
-};
+use covmap::{bin_coverage, mode_bin};
+use covmap_statistics::{LIKELIHOOD_FLOOR, central, crps, interval_holds, log_likelihood};
 use serde::Serialize;
 use std::iter::Sum;
 use std::ops::Add;

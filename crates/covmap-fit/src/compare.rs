@@ -8,9 +8,9 @@ pub use calibration::{CALIBRATION_LEVELS, CalibrationTable};
 
 use crate::example::truths;
 use crate::{ByClass, Class, ClassScore, Example, Method, Weighting};
-use blocks::{interval, resamples};
-use covmap::randomised_pit;
+use blocks::resamples;
 use covmap_model::ModelError;
+use covmap_statistics::{central_interval, randomised_pit};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -50,7 +50,7 @@ impl Default for ComparisonSettings {
 
 /// A mean over cells.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Estimate {
+pub struct CellMean {
     /// The mean; 0 if there are no such cells.
     pub value: f64,
     /// Its 95 % interval by resampling blocks of the trajectories; `None` if fewer than two
@@ -75,18 +75,18 @@ pub struct ClassComparison {
     /// How many cells.
     pub cells: usize,
     /// Mean log-likelihood of the truth, with the floor of `covmap` \[nats\].
-    pub log_likelihood: Estimate,
+    pub log_likelihood: CellMean,
     /// Mean continuous ranked probability score.
-    pub crps: Estimate,
+    pub crps: CellMean,
     /// Mean absolute error of the expected coverage.
-    pub error: Estimate,
+    pub error: CellMean,
     /// The share of cells whose randomised probability integral transform lies in the
     /// central half, \[.25, .75\]: ½ for a calibrated method, over all cells. (Within a class
     /// not even the true posterior need meet it: the class is chosen by the truth. And mass at
     /// both ends puts every partial truth in the middle: read it beside CRPS.)
-    pub central_50: Estimate,
+    pub central_50: CellMean,
     /// The same for \[.05, .95\] and .9.
-    pub central_90: Estimate,
+    pub central_90: CellMean,
 }
 
 /// One method, raw or calibrated, on the test examples.
@@ -97,7 +97,7 @@ pub struct Row {
     /// Whether its output went through the calibration table of the training examples.
     pub calibrated: bool,
     /// Mean log-likelihood by the settings' weighting \[nats\].
-    pub objective: Estimate,
+    pub objective: CellMean,
     /// Scores of all cells and of each class.
     pub classes: ByClass<ClassComparison>,
 }
@@ -135,7 +135,7 @@ pub fn compare(
         let row = |calibrated: bool| {
             let own = &sums[i][usize::from(calibrated)];
             let reference = sums.get(settings.reference).filter(|_| i != settings.reference);
-            let estimates = Estimates {
+            let estimates = CellMeans {
                 own,
                 reference: reference.map(|sums| &sums[usize::from(calibrated)][..]),
                 resamples: &resamples,
@@ -249,13 +249,13 @@ impl TestCells {
 
 /// What the estimates of a row come from: sums of every block of one method and of the
 /// reference, and how often each block is drawn.
-struct Estimates<'a> {
+struct CellMeans<'a> {
     own: &'a [Sums],
     reference: Option<&'a [Sums]>,
     resamples: &'a [Vec<f64>],
 }
 
-impl Estimates<'_> {
+impl CellMeans<'_> {
     fn row(&self, name: &str, calibrated: bool, weighting: Weighting) -> Row {
         let objective = self.estimate(self.own.len() >= 2, |sums, drawn| {
             let is_there = |class| sums.iter().any(|s| s.get(Some(class)).cells > 0);
@@ -283,10 +283,10 @@ impl Estimates<'_> {
         &self,
         enough: bool,
         of: impl Fn(&[Sums], Option<&[f64]>) -> Option<f64>,
-    ) -> Estimate {
+    ) -> CellMean {
         let interval = |of: &dyn Fn(Option<&[f64]>) -> Option<f64>| {
             let values = self.resamples.iter().map(|drawn| of(Some(drawn)));
-            if enough { interval(values) } else { None }
+            if enough { central_interval(values) } else { None }
         };
         let own = |drawn: Option<&[f64]>| of(self.own, drawn);
         let difference = self.reference.and_then(|reference| {
@@ -294,7 +294,7 @@ impl Estimates<'_> {
                 |drawn: Option<&[f64]>| Some(of(self.own, drawn)? - of(reference, drawn)?);
             Some(Difference { value: difference(None)?, interval: interval(&difference) })
         });
-        Estimate { value: own(None).unwrap_or(0.0), interval: interval(&own), difference }
+        CellMean { value: own(None).unwrap_or(0.0), interval: interval(&own), difference }
     }
 }
 

@@ -34,7 +34,7 @@ pub use axis::{Axis, AxisError, Parameter};
 pub use class::ByClass;
 pub use class_score::{ClassScore, ExampleScore};
 pub use compare::{CALIBRATION_LEVELS, CalibrationTable, ClassComparison, ComparisonSettings};
-pub use compare::{Contender, Difference, Estimate, Row, compare, table, trajectory_blocks};
+pub use compare::{CellMean, Contender, Difference, Row, compare, table, trajectory_blocks};
 pub use covmap::Class;
 pub use example::{BodyRecord, Example};
 pub use fitting::{Evaluation, FitError, FitSettings, Fitted, Profile, Weighting, fit, score};

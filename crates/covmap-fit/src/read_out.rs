@@ -206,7 +206,7 @@ mod tests {
         fn reading_makes_the_training_truths_no_less_likely(cells in cells()) {
             let all = |read_out: &ReadOut| -> f64 {
                 let likelihood = |(p, truth): &(Vec<f64>, f64)| {
-                    covmap::log_likelihood(&read(read_out, p), *truth, 0.0)
+                    covmap_statistics::log_likelihood(&read(read_out, p), *truth, 0.0)
                 };
                 cells.iter().map(likelihood).sum()
             };

@@ -1,7 +1,8 @@
 //! Whether a map knows how right it is.
 
 use crate::{ByClass, Class};
-use covmap::{Histogram, bin_coverage, central};
+use covmap::{Histogram, bin_coverage};
+use covmap_statistics::central;
 use serde::Serialize;
 
 /// How many levels, from 1/20 to 1.

@@ -4,7 +4,7 @@
 
 use covmap::{Cell, Grid};
 use covmap_fit::{
-    Axis, BetaCounting, BodyRecord, ComparisonSettings, Contender, Crm, Estimate, Example, LogOdds,
+    Axis, BetaCounting, BodyRecord, CellMean, ComparisonSettings, Contender, Crm, Example, LogOdds,
     Method, MethodParameter, Row, TuneError, TuneSettings, Update, Weighting, compare,
     trajectory_blocks, tune,
 };
@@ -103,7 +103,7 @@ fn every_method_knows_more_than_a_constant() {
 
 #[test]
 fn an_interval_holds_its_mean() {
-    let holds = |e: &Estimate| {
+    let holds = |e: &CellMean| {
         let rounding = 1e-9;
         e.interval
             .is_some_and(|(low, high)| low - rounding <= e.value && e.value <= high + rounding)

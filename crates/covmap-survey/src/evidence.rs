@@ -3,10 +3,10 @@
 use super::near::Near;
 use super::view::{axis, is_pose};
 use super::{Survey, SurveyParameters};
-use covmap_world::WorldError;
-use covmap_world::geometry::cells_along;
 use covmap::{Grid, Raster};
 use covmap_sonar::{Range, Scan, SonarRing};
+use covmap_world::WorldError;
+use covmap_world::geometry::cells_along;
 use nalgebra::{Point2, Vector2};
 
 /// How beams met one cell.

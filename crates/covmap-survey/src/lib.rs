@@ -33,9 +33,9 @@ mod wall;
 pub use evidence::Evidence;
 pub use parameters::SurveyParameters;
 
-use covmap_world::WorldError;
-use covmap_world::Shape;
 use covmap_sonar::{Scan, SonarRing};
+use covmap_world::Shape;
+use covmap_world::WorldError;
 use nalgebra::Point2;
 use near::Near;
 use rayon::prelude::*;

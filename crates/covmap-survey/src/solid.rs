@@ -2,11 +2,11 @@
 
 use super::line::Line;
 use super::{Post, Side, Survey, WallSegment};
-use covmap_world::geometry::Solids;
+use covmap::{Grid, Raster};
 use covmap_world::WorldError;
+use covmap_world::geometry::Solids;
 use covmap_world::geometry::{Outline, outlines};
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface};
-use covmap::{Grid, Raster};
 use nalgebra::{Point2, Vector2};
 
 /// Ends of walls that are this near to each other are one corner [m].

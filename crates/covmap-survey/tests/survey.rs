@@ -2,10 +2,11 @@
 
 use covmap::{Cell, Grid};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
+use covmap_statistics::stream;
 use covmap_survey::{
     Evidence, Post, Side, Survey, SurveyError, SurveyParameters, Surveyed, WallSegment, survey,
 };
-use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World, WorldError, stream};
+use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World, WorldError};
 use nalgebra::{Isometry2, Point2, Vector2};
 use proptest::prelude::*;
 use rand_pcg::rand_core::Rng;

@@ -3,7 +3,8 @@
 
 use covmap::Grid;
 use covmap_sonar::SonarRing;
-use covmap_world::{Extent, Obstacle, Scenario, Shape, SonarPhysics, Surface, World, stream};
+use covmap_statistics::stream;
+use covmap_world::{Extent, Obstacle, Scenario, Shape, SonarPhysics, Surface, World};
 use criterion::{Criterion, criterion_group, criterion_main};
 use nalgebra::{Isometry2, Point2, Vector2};
 use parry2d::math::Vec2;

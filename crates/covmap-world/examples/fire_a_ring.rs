@@ -2,7 +2,8 @@
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
 use covmap_sonar::{Range, SonarRing};
-use covmap_world::{Extent, Obstacle, Scenario, Shape, SonarPhysics, Surface, World, stream};
+use covmap_statistics::stream;
+use covmap_world::{Extent, Obstacle, Scenario, Shape, SonarPhysics, Surface, World};
 use nalgebra::{Isometry2, Vector2};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {

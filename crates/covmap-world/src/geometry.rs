@@ -6,10 +6,10 @@ mod face;
 pub(crate) mod feature;
 mod index;
 
-pub(crate) use exposed::Exposed;
 pub use crate::coverage::Solids;
 pub use crate::outline::{Outline, outlines};
 pub use crate::sight::cells_along;
+pub(crate) use exposed::Exposed;
 pub use face::Face;
 pub(crate) use feature::{Feature, Kind};
 pub use index::{Bounds, Index};

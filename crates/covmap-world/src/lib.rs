@@ -7,7 +7,8 @@
 //! Metres, radians counter-clockwise, seconds; coverage in [0, 1].
 //!
 //! ```
-//! use covmap_world::{Scenario, SonarPhysics, Surface, World, stream};
+//! use covmap_statistics::stream;
+//! use covmap_world::{Scenario, SonarPhysics, Surface, World};
 //! let scenario: Scenario = ron::from_str("(name: \"pillar\", extent: (width: 5.0, height: 4.0),
 //!     obstacles: [(shape: Circle(center: (3.0, 2.0), radius: 0.4), surface: Smooth)],
 //! )")?;
@@ -35,5 +36,5 @@ pub use drive::Drive;
 pub use error::{MAX_EXTENT, MAX_OBSTACLES, MIN_LENGTH, WorldError};
 pub use scenario::{Extent, Obstacle, Scenario, Shape, Start, Surface};
 pub use sight::Seen;
-pub use sonar::{Blanking, PhysicsError, SonarPhysics, stream, uniform};
+pub use sonar::{Blanking, PhysicsError, SonarPhysics};
 pub use world::World;

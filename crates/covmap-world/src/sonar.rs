@@ -3,7 +3,5 @@
 mod echo;
 mod fire;
 mod physics;
-mod random;
 
 pub use physics::{Blanking, PhysicsError, SonarPhysics};
-pub use random::{stream, uniform};

@@ -25,11 +25,11 @@
 //! ```
 
 mod belief_file;
+mod class;
 mod coverage_map;
 mod grid;
 mod histogram;
 pub mod lanes;
-mod proper_score;
 mod raster;
 mod read_out;
 mod scored;
@@ -37,14 +37,11 @@ mod short;
 mod steps;
 
 pub use belief_file::BeliefFileError;
+pub use class::{Class, lower_bin};
 pub use coverage_map::{Change, CoverageMap, EvidenceBlock, MapError};
 pub use grid::{Cell, Grid, GridError, MAX_CELLS};
 pub use histogram::{
     Histogram, MAX_BINS, MIN_BINS, PROBABILITY_FLOOR, bin_coverage, mode_bin, product,
-};
-pub use proper_score::{
-    Class, LIKELIHOOD_FLOOR, central, crps, interval_holds, log_likelihood, lower_bin,
-    randomised_pit,
 };
 pub use raster::Raster;
 pub use read_out::{READ_OUT_FLOOR, ReadOut, ReadOutError};

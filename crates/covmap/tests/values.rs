@@ -5,8 +5,9 @@
 use covmap::lanes::{LANES, TOGETHER};
 use covmap::{
     Cell, Class, CoverageMap, EvidenceBlock, Grid, Histogram, PROBABILITY_FLOOR, Raster,
-    bin_coverage, crps, log_likelihood, lower_bin, product, randomised_pit,
+    bin_coverage, lower_bin, product,
 };
+use covmap_statistics::{crps, log_likelihood, randomised_pit};
 use nalgebra::{Point2, Vector2};
 
 /// Three readings of a cell of three bins. From a uniform prior Eq. (8) and (11) give

@@ -5,7 +5,8 @@ use super::clock::race;
 use super::table::{Row, Table};
 use anyhow::Result;
 use covmap_sonar::Beam;
-use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World, stream};
+use covmap_statistics::stream;
+use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use nalgebra::{Isometry2, Point2, Vector2};
 
 const COLUMNS: u32 = 50;

@@ -5,9 +5,9 @@ use crate::campaign::{PARAMETERS, parameters};
 use crate::paper::crossing::{Point, curve};
 use crate::paper::runs::{Run, Runs};
 use anyhow::Result;
-use covmap_explore::statistics::Estimate;
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 use covmap_plan::Strategy;
+use covmap_statistics::Estimate;
 
 /// Draws the figure for one or more configurations, each with its runs.
 pub(crate) fn write(output: &Output, columns: &[(&str, &Runs)]) -> Result<()> {

@@ -5,8 +5,8 @@ use crate::fit;
 use crate::fit_file::{FitPlan, Source};
 use crate::progress::Progress;
 use anyhow::Result;
-use covmap_explore::statistics::{Estimate, Grouped, bootstrap};
 use covmap_fit::{Example, score};
+use covmap_statistics::{Estimate, Grouped, bootstrap};
 use std::collections::BTreeMap;
 use std::path::Path;
 

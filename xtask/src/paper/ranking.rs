@@ -1,7 +1,7 @@
 //! How well the order of strategies in single units agrees with a ranking.
 
 use super::runs::Units;
-use covmap_explore::statistics::{Estimate, kendall_tau};
+use covmap_statistics::{Estimate, kendall_tau};
 
 /// The mean over units of Kendall's τ between a ranking and the numbers of the unit, with its
 /// error by resampling starts. A unit without any order has a τ of 0.

@@ -1,8 +1,8 @@
 //! The runs of one setting of a campaign, paired by start and seed.
 
 use crate::campaign::{Campaign, RunRecord, Value};
-use covmap_explore::statistics::{Estimate, Grouped, bootstrap};
 use covmap_plan::Strategy;
+use covmap_statistics::{Estimate, Grouped, bootstrap};
 use std::collections::BTreeMap;
 
 /// So often starts are resampled, and with which seed.

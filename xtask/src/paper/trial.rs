@@ -1,6 +1,6 @@
 //! A number against its threshold, and what follows for a claim.
 
-use covmap_explore::statistics::{Estimate, holm};
+use covmap_statistics::{Estimate, holm};
 use serde::Serialize;
 use std::fmt;
 

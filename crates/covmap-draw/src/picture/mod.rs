@@ -9,8 +9,8 @@ pub(crate) mod text;
 
 pub use color::{ColorMap, Rgb, coverage_color};
 
-use covmap_io::FileError;
 use covmap::{Grid, Raster};
+use covmap_io::FileError;
 use nalgebra::Point2;
 use std::io;
 use std::path::Path;

@@ -2,7 +2,8 @@
 
 use crate::score::mean;
 use crate::{Mission, Truth};
-use covmap::{Cell, Class, CoverageMap, crps};
+use covmap::{Cell, Class, CoverageMap};
+use covmap_statistics::crps;
 
 /// Above this entropy a cell is not explored well enough in Table 1 \[nats\].
 const TABLE_1: f64 = 0.65;

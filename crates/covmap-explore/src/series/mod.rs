@@ -3,12 +3,10 @@
 mod accuracy;
 mod compared;
 mod corners;
-mod spread;
 mod starts;
 mod tally;
 
 pub use accuracy::{Accuracy, Errors};
 pub use corners::corners;
-pub use spread::Spread;
 pub use starts::drawn_starts;
 pub use tally::{Measurements, Tally};

@@ -1,7 +1,8 @@
 //! Places to start from.
 
 use covmap::{Cell, Grid};
-use covmap_world::{World, stream, uniform};
+use covmap_statistics::{stream, uniform};
+use covmap_world::World;
 use nalgebra::Isometry2;
 use std::f64::consts::TAU;
 

@@ -1,6 +1,7 @@
-//! Resampling blocks of the trajectory: intervals that know that near cells err together.
+//! Blocks of the trajectory, which are resampled: cells that are near each other err together.
 
 use crate::Example;
+use covmap_statistics::resample;
 use rayon::prelude::*;
 
 /// The block of every cell of an example's truth, in its order, from 0 to below `blocks`:
@@ -20,32 +21,16 @@ pub fn trajectory_blocks(example: &Example, blocks: usize) -> Vec<usize> {
     example.truth.par_iter().map(|(cell, _)| block(*cell)).collect()
 }
 
-/// How often each block is drawn in each resample: as many draws with replacement as there
-/// are blocks.
+/// How often each block is drawn in each resample.
 pub(crate) fn resamples(
     blocks: usize,
     times: usize,
     mut uniform: impl FnMut() -> f64,
 ) -> Vec<Vec<f64>> {
-    let mut resample = || {
-        let mut drawn = vec![0.0; blocks];
-        for _ in 0..blocks {
-            #[allow(clippy::cast_precision_loss, reason = "few blocks")]
-            let place = uniform() * blocks as f64;
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few")]
-            let block = place as usize;
-            drawn[block.min(blocks - 1)] += 1.0;
-        }
-        drawn
+    let mut drawn = || {
+        let mut counts = vec![0.0; blocks];
+        resample(blocks, &mut uniform).into_iter().for_each(|block| counts[block] += 1.0);
+        counts
     };
-    (0..times).map(|_| resample()).collect()
-}
-
-/// The central 95 % interval of the values of resamples that have one; `None` if none has.
-pub(crate) fn interval(values: impl Iterator<Item = Option<f64>>) -> Option<(f64, f64)> {
-    let mut values: Vec<f64> = values.flatten().filter(|v| v.is_finite()).collect();
-    values.sort_by(f64::total_cmp);
-    let outside = values.len() / 40;
-    let last = values.len().checked_sub(1)?;
-    Some((values[outside], values[last - outside]))
+    (0..times).map(|_| drawn()).collect()
 }

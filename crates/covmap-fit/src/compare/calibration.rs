@@ -60,7 +60,7 @@ fn level(posterior: &[f64]) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use covmap::{log_likelihood, randomised_pit};
+    use covmap_statistics::{log_likelihood, randomised_pit};
     use proptest::prelude::*;
 
     /// Truths from a ramp; posteriors that are far too sure of what they half know.

@@ -1,10 +1,10 @@
 //! Firing a ring of sonars.
 
 use super::echo::Echoes;
-use super::random::{normal, uniform};
 use crate::sonar::{Blanking, SonarPhysics};
 use crate::world::World;
 use covmap_sonar::{Beam, Range, SonarRing};
+use covmap_statistics::{normal, uniform};
 use nalgebra::{Isometry2, Translation2, Vector2};
 use rand_pcg::Pcg64;
 

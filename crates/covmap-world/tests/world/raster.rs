@@ -136,7 +136,7 @@ proptest! {
 fn a_million_scattered_cells_are_a_world() {
     use rand_pcg::rand_core::Rng;
     let grid = Grid::new(Point2::origin(), 0.05, 1000, 1000).unwrap();
-    let mut rng = covmap_world::stream(1, "raster", 0);
+    let mut rng = covmap_statistics::stream(1, "raster", 0);
     let solid = Raster::from_fn(grid, |_| rng.next_u32().is_multiple_of(8));
     let world = build(&solid);
     assert_eq!(world.coverage(&grid), solid.map(|&s| f64::from(u8::from(s))));

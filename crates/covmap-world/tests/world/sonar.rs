@@ -2,7 +2,8 @@
 
 use crate::build::{any_shapes, rectangle, wall, world};
 use covmap_sonar::{Beam, Range, SonarRing};
-use covmap_world::{Blanking, Shape, SonarPhysics, Surface, World, stream};
+use covmap_statistics::stream;
+use covmap_world::{Blanking, Shape, SonarPhysics, Surface, World};
 use nalgebra::{Isometry2, Point2, Vector2};
 use proptest::prelude::*;
 

@@ -5,8 +5,8 @@ use super::style::{
     BLUE, GREY, GREY_INK, LIGHT, ORANGE, PALE, PURPLE, SKY, SMALL, TEXT, VERMILION, count, keys,
     pale,
 };
-use covmap_gain::StencilCell;
 use covmap_draw::{Drawing, Rgb, TextAnchor};
+use covmap_gain::StencilCell;
 
 const WIDTH: f64 = 1040.0;
 const LEFT: f64 = 64.0;

@@ -4,7 +4,10 @@ use super::moment::Moment;
 use super::style::{GREEN, GREY, GREY_INK, ORANGE, SMALL, TEXT, VERMILION, count, key, pale};
 use anyhow::Result;
 use covmap::Cell;
-use covmap_draw::{Chart, ChartAxis, ChartPoint, ColorMap, Drawing, Figure, Rgb, Series, TextAnchor, coverage_color};
+use covmap_draw::{
+    Chart, ChartAxis, ChartPoint, ColorMap, Drawing, Figure, Rgb, Series, TextAnchor,
+    coverage_color,
+};
 
 const WIDTH: f64 = 1060.0;
 const MAP: f64 = 480.0;

@@ -6,8 +6,8 @@ use super::style::{
     BLUE, GREEN, GREY_INK, LIGHT, ORANGE, PALE, SMALL, TEXT, VERMILION, count, small,
 };
 use anyhow::{Context, Result};
-use covmap_gain::{GAIN_TOLERANCE, NEGLIGIBLE, TableErrors};
 use covmap_draw::{Drawing, Rgb, TextAnchor};
+use covmap_gain::{GAIN_TOLERANCE, NEGLIGIBLE, TableErrors};
 use rayon::ThreadPoolBuilder;
 
 const WIDTH: f64 = 1060.0;

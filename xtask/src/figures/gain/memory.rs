@@ -5,8 +5,8 @@ use super::style::{
     BLUE, GREEN, GREY, GREY_INK, LIGHT, ORANGE, PALE, SMALL, TEXT, VERMILION, arrow, count, pale,
 };
 use anyhow::{Context, Result};
-use covmap_gain::{MemoryLayout, PlaneLayout};
 use covmap_draw::{Drawing, Rgb, TextAnchor};
+use covmap_gain::{MemoryLayout, PlaneLayout};
 
 const WIDTH: f64 = 1060.0;
 const LEFT: f64 = 18.0;

@@ -3,8 +3,8 @@
 use super::beam::{Part, part};
 use super::moment::{Moment, Seen};
 use super::style::{BLUE, GREY, GREY_INK, LIGHT, PALE, SMALL, TEXT, VERMILION, count, keys, pale};
-use covmap_gain::NEGLIGIBLE;
 use covmap_draw::{Drawing, Rgb, TextAnchor};
+use covmap_gain::NEGLIGIBLE;
 
 const WIDTH: f64 = 1040.0;
 const LEFT: f64 = 92.0;

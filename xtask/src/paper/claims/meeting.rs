@@ -4,8 +4,8 @@ use super::{PATH, explored};
 use crate::paper::crossing::{Crossing, Point, crossing};
 use crate::paper::runs::Runs;
 use crate::paper::trial::{Finding, Trial, digits, shown};
-use covmap_explore::statistics::Estimate;
 use covmap_plan::Strategy;
+use covmap_statistics::Estimate;
 use std::collections::BTreeMap;
 
 const EXPLORED: &str = "share_explored";

@@ -6,8 +6,8 @@ use crate::paper::fitting::Fitting;
 use crate::paper::oblique::Oblique;
 use crate::paper::trial::{Bound, Finding, Trial};
 use covmap::{Histogram, bin_coverage};
-use covmap_explore::statistics::{Estimate, share_estimate};
 use covmap_model::SensorModel;
+use covmap_statistics::{Estimate, share_estimate};
 
 /// In at least this share of the seeds.
 const MOST_SEEDS: f64 = 0.9;

@@ -4,8 +4,8 @@ use super::{PATH, SCANS, explored};
 use crate::paper::ranking::mean_tau;
 use crate::paper::runs::Runs;
 use crate::paper::trial::{Bound, Finding, Trial};
-use covmap_explore::statistics::Estimate;
 use covmap_plan::Strategy;
+use covmap_statistics::Estimate;
 
 /// "Further experiments in alternative environments showed similar results."
 pub(crate) fn claim_17(runs: &Runs, places: &Runs) -> Finding {

@@ -3,8 +3,8 @@
 use super::{PATH, SCANS, explored};
 use crate::paper::runs::Runs;
 use crate::paper::trial::{Bound, Finding, Trial};
-use covmap_explore::statistics::Estimate;
 use covmap_plan::Strategy;
+use covmap_statistics::Estimate;
 
 const IG_CL_1: Strategy = Strategy::IgCl { alpha: 1.0 };
 

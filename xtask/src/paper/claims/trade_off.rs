@@ -5,8 +5,8 @@ use crate::paper::limits::Limits;
 use crate::paper::ranking::mean_tau;
 use crate::paper::runs::{Runs, Units};
 use crate::paper::trial::{Bound, Finding, Trial};
-use covmap_explore::statistics::Estimate;
 use covmap_plan::Strategy;
+use covmap_statistics::Estimate;
 use std::collections::BTreeMap;
 
 const IG_CL_3: Strategy = Strategy::IgCl { alpha: 0.3 };

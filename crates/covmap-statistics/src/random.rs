@@ -34,7 +34,7 @@ pub fn uniform(rng: &mut Pcg64) -> f64 {
 }
 
 /// A standard normal variate (Box–Muller), from exactly two uniform ones.
-pub(crate) fn normal(rng: &mut Pcg64) -> f64 {
+pub fn normal(rng: &mut Pcg64) -> f64 {
     let radius = (-2.0 * libm::log(1.0 - uniform(rng))).sqrt();
     radius * libm::cos(TAU * uniform(rng))
 }

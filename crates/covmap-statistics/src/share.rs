@@ -1,6 +1,6 @@
 //! How often something happened.
 
-use super::Estimate;
+use crate::Estimate;
 
 /// The share of successes among independent trials as an estimate, after Agresti and Coull:
 /// two successes and two failures are added, so that "always" is not certain. `None` without

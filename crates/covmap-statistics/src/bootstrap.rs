@@ -1,7 +1,6 @@
 //! Resampling starts: runs from the same start are not independent.
 
-use super::Estimate;
-use covmap_world::{stream, uniform};
+use crate::{Estimate, resample, stream, uniform};
 
 /// Observations in groups; the groups are independent of each other, their members need not be.
 pub type Grouped<T> = Vec<Vec<T>>;
@@ -34,14 +33,8 @@ pub fn bootstrap<T>(
     let times = times.min(MOST);
     let mut resampled = Vec::with_capacity(times);
     for _ in 0..times {
-        let mut drawn = Vec::with_capacity(all.len());
-        for _ in 0..groups.len() {
-            #[allow(clippy::cast_precision_loss, reason = "few groups")]
-            let place = uniform(&mut random) * groups.len() as f64;
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few")]
-            let group = (place as usize).min(groups.len() - 1);
-            drawn.extend(groups[group]);
-        }
+        let drawn = resample(groups.len(), || uniform(&mut random));
+        let drawn: Vec<&T> = drawn.into_iter().flat_map(|group| groups[group]).collect();
         resampled.extend(statistic(&drawn).filter(|value| value.is_finite()));
     }
     if resampled.len() < FEWEST.min(times).max(1) {

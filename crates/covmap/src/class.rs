@@ -1,0 +1,41 @@
+//! What a true coverage is: the class of the cell, and the bins beside it.
+
+/// A coverage this near to 0 or to 1 is one of them: exact coverages are good to this.
+const EXACT: f64 = 1e-9;
+
+/// The class of a cell by its true coverage.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Class {
+    /// Coverage 0.
+    Free,
+    /// A coverage between 0 and 1.
+    Partial,
+    /// Coverage 1.
+    Solid,
+}
+
+impl Class {
+    /// The class of a true coverage.
+    pub fn of(coverage: f64) -> Self {
+        match coverage {
+            c if c < EXACT => Self::Free,
+            c if c > 1.0 - EXACT => Self::Solid,
+            _ => Self::Partial,
+        }
+    }
+}
+
+/// The bin below a coverage, below the last one, and the fraction of the way to the next: how
+/// a coverage between two bins is divided among them.
+///
+/// # Panics
+/// Unless there are at least two bins.
+pub fn lower_bin(coverage: f64, bins: usize) -> (usize, f64) {
+    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
+    let place = coverage.clamp(0.0, 1.0) * (bins - 1) as f64;
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
+    let k = (place.floor() as usize).min(bins - 2);
+    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
+    let t = place - k as f64;
+    (k, t)
+}
