@@ -1,9 +1,10 @@
 //! A decision by bounds beside one by all gains.
 
 use crate::{files, root};
-use covmap_explore::{Config, Event, Limits, Mission, SimulatedRobot, explore};
+use covmap_explore::{Event, Limits, explore};
 use covmap_gain::GAIN_TOLERANCE;
 use covmap_io::read_ron;
+use covmap_lab::{Config, SimulatedRobot};
 use covmap_plan::{Reason, Strategy};
 use covmap_world::{Scenario, Surface, World};
 use std::ops::ControlFlow;
@@ -16,7 +17,7 @@ fn decisions(scenario: &Path, resolution: f64, strategy: Strategy, scans: usize)
     let mut config = Config::b21r();
     (config.resolution, config.planner.strategy) = (resolution, strategy);
     let limits = Limits { max_scans: Some(scans), ..Limits::default() };
-    let mission = Mission::new(&world, &config, None, limits).unwrap();
+    let mission = covmap_lab::mission(&world, &config, None, limits).unwrap();
     let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
     let (mut all, mut others) = (0, 0);
     explore(&mission, &mut robot, &mut |event, view| {

@@ -2,9 +2,10 @@
 
 use crate::root;
 use covmap::{CoverageMap, Grid, Raster};
-use covmap_explore::{Config, Limits, Mission, Run, SimulatedRobot, Truth, explore};
+use covmap_explore::{Limits, Mission, Run, explore};
 use covmap_fit::{BodyRecord, Example};
 use covmap_io::read_ron;
+use covmap_lab::{Config, SimulatedRobot, Truth};
 use covmap_plan::{BodyEvidence, Strategy};
 use covmap_world::{Scenario, Surface, World};
 use nalgebra::Point2;
@@ -19,7 +20,7 @@ fn run(body_evidence: BodyEvidence) -> (Mission, Run, World) {
     let smooth = scenario.with_surface(Surface::Smooth);
     let world = World::from_scenario(&smooth, Surface::Smooth).unwrap();
     let limits = Limits { max_scans: Some(60), ..Limits::default() };
-    let mission = Mission::new(&world, &config, None, limits).unwrap();
+    let mission = covmap_lab::mission(&world, &config, None, limits).unwrap();
     let mut robot = SimulatedRobot::new(&world, &config, 3).unwrap();
     let run = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(())).unwrap();
     (mission, run, world)

@@ -8,8 +8,9 @@
 //!
 //! writes them anew, and the commit says why.
 
-use covmap_explore::{Config, Limits, Mission, SimulatedRobot, TraceHasher, explore};
+use covmap_explore::{Limits, TraceHasher, explore};
 use covmap_io::read_ron;
+use covmap_lab::{Config, SimulatedRobot};
 use covmap_world::{Scenario, World};
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -32,7 +33,7 @@ fn run(strategy: &str, while_driving: Option<f64>) -> (String, usize) {
     let scenario: Scenario = read_ron(crate::root().join("scenarios/lab.ron")).unwrap();
     let world = World::from_scenario(&scenario, config.sonar.surface).unwrap();
     let limits = Limits { while_driving, max_scans: Some(400) };
-    let mission = Mission::new(&world, &config, None, limits).unwrap();
+    let mission = covmap_lab::mission(&world, &config, None, limits).unwrap();
     let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
     let mut hash = TraceHasher::default();
     let run = explore(&mission, &mut robot, &mut |event, _| {

@@ -4,7 +4,7 @@
 #![allow(clippy::unwrap_used, reason = "a test")]
 
 use covmap::{CoverageMap, Grid, Raster};
-use covmap_explore::Config;
+use covmap_lab::Config;
 use covmap_plan::{Planner, Strategy, planner_bytes};
 use covmap_sonar::RingSpecification;
 use nalgebra::Point2;

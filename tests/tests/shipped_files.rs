@@ -1,8 +1,9 @@
 //! Every shipped configuration and scenario is loaded and run.
 
 use crate::files;
-use covmap_explore::{CellCounts, Config, Ending, Limits, Mission, SimulatedRobot, Truth, explore};
+use covmap_explore::{Ending, Limits, explore};
 use covmap_io::{read_ron, write_ron};
+use covmap_lab::{CellCounts, Config, SimulatedRobot, Truth};
 use covmap_plan::Planner;
 use covmap_world::{Scenario, World};
 use std::ops::ControlFlow;
@@ -36,7 +37,7 @@ fn every_configuration_makes_a_model_and_a_planner() {
         let (ring, model) = config.build().unwrap_or_else(|e| panic!("{}: {e}", path.display()));
         assert_eq!(model.footprint().beams(), ring.beams().len());
         let world = world(&crate::root().join("scenarios/lab.ron"), &config);
-        let mission = Mission::new(&world, &config, None, Limits::default()).unwrap();
+        let mission = covmap_lab::mission(&world, &config, None, Limits::default()).unwrap();
         let radius = config.robot.radius;
         Planner::new(&config.planner, &model, &mission.outside, radius, 0.0)
             .unwrap_or_else(|error| panic!("{}: {error}", path.display()));
@@ -68,7 +69,7 @@ fn the_robot_fits_at_every_start() {
         assert_eq!(world.name(), name, "a scenario is called as its file");
         let start = world.given_start().unwrap_or_else(|| panic!("{name} has no start"));
         assert!(world.clearance(start.translation.vector.into()) >= config.robot.radius, "{name}");
-        Mission::new(&world, &config, None, Limits::default()).unwrap();
+        covmap_lab::mission(&world, &config, None, Limits::default()).unwrap();
     }
 }
 
@@ -79,7 +80,7 @@ fn every_scenario_is_explored_for_a_while() {
     for path in files("scenarios", "ron") {
         let world = world(&path, &config);
         let limits = Limits { max_scans: Some(5), ..Limits::default() };
-        let mission = Mission::new(&world, &config, None, limits).unwrap();
+        let mission = covmap_lab::mission(&world, &config, None, limits).unwrap();
         let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
         let run = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(())).unwrap();
         assert_eq!((run.ending, run.scans.len()), (Ending::BudgetSpent, 5), "{}", world.name());

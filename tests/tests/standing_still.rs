@@ -2,9 +2,10 @@
 
 use crate::root;
 use covmap::CoverageMap;
-use covmap_explore::{Config, Limits, Mission, Robot, SimulatedRobot, Truth};
+use covmap_explore::{Limits, Robot};
 use covmap_fit::{ExampleScore, Weighting};
 use covmap_io::read_ron;
+use covmap_lab::{Config, SimulatedRobot, Truth};
 use covmap_model::{Looks, Repeats, SensorModel};
 use covmap_sonar::Scan;
 use covmap_world::{Scenario, Surface, World};
@@ -18,7 +19,7 @@ fn score(scenario: &str, seed: u64, share: f64, scans: [usize; 2]) -> [f64; 2] {
     let mut config = Config::b21r();
     config.model =
         config.model.with_cause(|cause| cause.repeats = Repeats { share, ..cause.repeats });
-    let mission = Mission::new(&world, &config, None, Limits::default()).unwrap();
+    let mission = covmap_lab::mission(&world, &config, None, Limits::default()).unwrap();
     let mut robot = SimulatedRobot::new(&world, &config, seed).unwrap();
     let (ring, _) = config.build().unwrap();
     let model = SensorModel::new(&config.model, &ring, config.resolution).unwrap();

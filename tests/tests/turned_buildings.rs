@@ -1,10 +1,9 @@
 //! Buildings at every angle: the robot gets through each door that is wide enough.
 
 use crate::root;
-use covmap_explore::{
-    Config, CutOff, Ending, Limits, Mission, Score, SimulatedRobot, Truth, explore,
-};
+use covmap_explore::{Ending, Limits, explore};
 use covmap_io::read_ron;
+use covmap_lab::{Config, CutOff, Score, SimulatedRobot, Truth};
 use covmap_statistics::{stream, uniform};
 use covmap_world::{Scenario, World};
 use nalgebra::Vector2;
@@ -18,7 +17,7 @@ fn explored(building: &str, angle: f64, shift: Vector2<f64>) -> (Ending, Score, 
     let mut config: Config = read_ron(root().join("configs/b21r.ron")).unwrap();
     config.resolution = 0.2;
     let world = World::from_scenario(&scenario.moved(angle, shift), config.sonar.surface).unwrap();
-    let mission = Mission::new(&world, &config, None, Limits::default()).unwrap();
+    let mission = covmap_lab::mission(&world, &config, None, Limits::default()).unwrap();
     let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
     let run = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(())).unwrap();
     let truth = Truth::new(&world, &mission);

@@ -20,7 +20,7 @@ use crate::input;
 use crate::progress::Progress;
 use crate::say;
 use anyhow::Result;
-use covmap_explore::Config;
+use covmap_lab::Config;
 pub(crate) use growth::Point;
 use std::process::ExitCode;
 use table::Table;

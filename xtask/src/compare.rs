@@ -6,12 +6,12 @@ use crate::interrupt::Interrupt;
 use crate::progress::Progress;
 use crate::{csv_file, interrupt, output, say};
 use anyhow::{Result, bail};
-use covmap_explore::Config;
 use covmap_fit::{
     Axis, BetaCounting, CellMean, ComparisonSettings, Contender, Crm, Example, LogOdds, Method,
     MethodParameter, Parameter, Row, TuneSettings, Update, compare, tune,
 };
 use covmap_io::{OutputFolder, write_json};
+use covmap_lab::Config;
 use covmap_model::ModelParameters;
 use covmap_statistics::{stream, uniform};
 use serde::Serialize;

@@ -9,10 +9,9 @@ use crate::trace_file::TraceWriter;
 use crate::world_file::{self, Remarks, WorldFile};
 use crate::{fit_report, input, output, results, say};
 use anyhow::Result;
-use covmap_explore::{
-    Config, CutOff, Ending, Limits, Mission, Run, SimulatedRobot, Summary, TraceHeader, explore,
-};
+use covmap_explore::{Ending, Limits, Run};
 use covmap_io::{MapCounts, MapThresholds};
+use covmap_lab::{Config, CutOff, Experiment, Summary};
 use covmap_world::World;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -22,8 +21,7 @@ use std::time::Instant;
 /// A world, the mission in it, and the seed.
 pub(crate) struct Task {
     pub(crate) world: World,
-    pub(crate) mission: Mission,
-    pub(crate) seed: u64,
+    pub(crate) experiment: Experiment,
     /// When a cell of the map for other software is free or occupied.
     pub(crate) thresholds: MapThresholds,
     /// How the map is read.
@@ -75,7 +73,8 @@ fn task(arguments: &Explore) -> Result<(Task, Remarks, Vec<u8>)> {
     let mission = input::mission(places.0, places.1, arguments.start, limits)?;
     let thresholds = arguments.safe_map.thresholds(&mission.config.planner);
     let reader = arguments.read_out.load(mission.config.model.bins)?;
-    Ok((Task { world, mission, seed: arguments.seed, thresholds, reader }, remarks, bytes))
+    let experiment = Experiment { mission, sonar: config.sonar, seed: arguments.seed };
+    Ok((Task { world, experiment, thresholds, reader }, remarks, bytes))
 }
 
 /// The configuration with what was typed instead of what the file says.
@@ -109,8 +108,8 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
     });
     Ok(output::named([
         Some(task.world.name().to_owned()),
-        Some(task.mission.config.planner.strategy.file_name()),
-        Some(task.seed.to_string()),
+        Some(task.experiment.mission.config.planner.strategy.file_name()),
+        Some(task.experiment.seed.to_string()),
         other.map(output::stem),
         arguments.effort.map(|effort| format!("{effort:?}").to_lowercase()),
         finer.map(|resolution| format!("r{resolution}")),
@@ -123,10 +122,11 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
 
 /// Which run it is: what the trace begins with, and the world.
 fn run_line(task: &Task, world_bytes: Vec<u8>, read_out: Option<&Path>) -> Result<String> {
-    let Task { world, mission, seed, .. } = task;
+    let Task { world, experiment, .. } = task;
+    let Experiment { mission, seed, .. } = experiment;
     let strategy = &mission.config.planner.strategy;
     let words = format!("explore {}, {strategy}, seed {seed}", world.name());
-    let header = TraceHeader::new(mission, world.name(), *seed);
+    let header = experiment.header(world);
     let digest = Digest::default().with(serde_json::to_vec(&header)?).with(world_bytes);
     let digest = read_out.into_iter().try_fold(digest, Digest::with_file)?;
     Ok(output::run_line(&words, digest))
@@ -139,12 +139,11 @@ fn watch(
     progress: &mut Progress,
     interrupt: &Interrupt,
 ) -> Result<Run> {
-    let Task { world, mission, seed, .. } = task;
-    trace.header(&TraceHeader::new(mission, world.name(), *seed))?;
-    let mut robot = SimulatedRobot::new(world, &mission.config, *seed)?;
+    let Task { world, experiment, .. } = task;
+    trace.header(&experiment.header(world))?;
     let mut failed = None;
-    let run = explore(mission, &mut robot, &mut |event, view| {
-        progress.show(mission, view);
+    let run = experiment.explore(world, &mut |event, view| {
+        progress.show(&experiment.mission, view);
         if failed.is_none() {
             failed = trace.event(event).err();
         }

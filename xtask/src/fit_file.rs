@@ -6,9 +6,10 @@ use crate::progress::Progress;
 use crate::recorded::Recorded;
 use crate::world_file;
 use anyhow::{Result, bail};
-use covmap_explore::{Config, Limits, Mission, SimulatedRobot, Truth, explore};
+use covmap_explore::{Limits, Mission};
 use covmap_fit::{Axis, BodyRecord, Example, Weighting};
 use covmap_io::read_ron;
+use covmap_lab::{Config, Experiment, Truth};
 use covmap_plan::Strategy;
 use covmap_sonar::SonarRing;
 use covmap_world::{Surface, World};
@@ -183,8 +184,8 @@ impl Source {
 }
 
 impl Simulated {
-    /// The world and the mission in it.
-    fn task(&self, path: &Path, explorer: &Named) -> Result<(World, Mission)> {
+    /// The world and the experiment in it.
+    fn task(&self, path: &Path, explorer: &Named) -> Result<(World, Experiment)> {
         let Named { config, file: name } = explorer;
         if let Some(scans) = self.scans.filter(|scans| !(1..=MOST_SCANS).contains(scans)) {
             bail!("{}: scans: {scans} must lie in 1..={MOST_SCANS}", path.display());
@@ -196,7 +197,7 @@ impl Simulated {
         config.resolution = self.resolution.unwrap_or(config.resolution);
         let limits = Limits { max_scans: self.scans, ..Limits::default() };
         let mission = input::mission((&world, &file), (&config, name.as_path()), None, limits)?;
-        Ok((world, mission))
+        Ok((world, Experiment { mission, sonar: config.sonar, seed: self.seed }))
     }
 
     /// The world; what no file says about surfaces is `surface`.
@@ -226,18 +227,18 @@ impl Simulated {
         explorer: &Named,
         watch: &mut dyn FnMut() -> ControlFlow<()>,
     ) -> Result<Example> {
-        let (world, mission) = self.task(path, explorer)?;
-        let mut robot = SimulatedRobot::new(&world, &mission.config, self.seed)?;
-        let run = explore(&mission, &mut robot, &mut |_, view| match view.scans {
+        let (world, experiment) = self.task(path, explorer)?;
+        let mission = &experiment.mission;
+        let run = experiment.explore(&world, &mut |_, view| match view.scans {
             MOST_SCANS.. => ControlFlow::Break(()),
             _ => watch(),
         })?;
-        let truth = Truth::new(&world, &mission);
+        let truth = Truth::new(&world, mission);
         let measured = truth.measured_cells(&run.map);
         let coverage = |cell| truth.coverage.get(cell).copied().unwrap_or(1.0);
         Ok(Example {
-            name: self.name(&world, &mission),
-            ring: ring(&mission)?,
+            name: self.name(&world, mission),
+            ring: ring(mission)?,
             scans: run.scans,
             body: BodyRecord { radius: mission.config.robot.radius, events: run.body },
             grid: mission.grid,

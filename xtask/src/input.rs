@@ -4,8 +4,9 @@ use crate::memory;
 use crate::world_file;
 use anyhow::{Result, anyhow, bail};
 use covmap::{Grid, Raster};
-use covmap_explore::{Config, ConfigError, Limits, Mission, MissionError};
+use covmap_explore::{Limits, Mission};
 use covmap_io::{parse_ron, read_ron};
+use covmap_lab::{Config, SetupError};
 use covmap_model::SensorModel;
 use covmap_plan::{Planner, PlannerError};
 use covmap_world::{Scenario, Surface, World};
@@ -112,10 +113,10 @@ pub(crate) fn check(config: &Config, name: &Path) -> Result<SensorModel> {
     Ok(model)
 }
 
-fn check_planner(config: &Config, model: &SensorModel, grid: Grid) -> Result<(), ConfigError> {
+fn check_planner(config: &Config, model: &SensorModel, grid: Grid) -> Result<(), PlannerError> {
     let outside = Raster::filled(grid, false);
     let planner = Planner::new(&config.planner, model, &outside, config.robot.radius, 0.0);
-    planner.map(|_| ()).map_err(|error: PlannerError| error.into())
+    planner.map(drop)
 }
 
 /// The mission to explore the world in a file.
@@ -128,8 +129,8 @@ pub(crate) fn mission(
     check(config, name)?;
     let grid = world.grid(config.resolution).map_err(about(file))?;
     memory::check_run(&grid, config, 1).map_err(about(file))?;
-    Mission::new(world, config, start, limits).map_err(|error| match error {
-        MissionError::Config(error) => about(name)(error),
+    covmap_lab::mission(world, config, start, limits).map_err(|error| match error {
+        SetupError::Config(error) => about(name)(error),
         error => about(file)(error),
     })
 }

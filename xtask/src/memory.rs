@@ -2,7 +2,7 @@
 
 use anyhow::{Result, bail};
 use covmap::{CoverageMap, Grid};
-use covmap_explore::{Config, run_bytes};
+use covmap_lab::{Config, run_bytes};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 const GIB: f64 = (1u64 << 30) as f64;

@@ -25,7 +25,7 @@ use crate::fit_file::FitPlan;
 use crate::say;
 use anyhow::Result;
 use claims::Evidence;
-use covmap_explore::Config;
+use covmap_lab::Config;
 use experiments::{B21R, PAPER, ablation, campaigns};
 use fitting::Fitting;
 use limits::Limits;

@@ -4,7 +4,8 @@ use crate::pictures::occupancy_of;
 use anyhow::Result;
 use covmap::{Cell, Class, CoverageMap, Raster};
 use covmap_draw::{ChartAxis, ColorMap, Figure, HeatMap};
-use covmap_explore::{Mission, Run, Summary, Truth};
+use covmap_explore::{Mission, Run};
+use covmap_lab::{Summary, Truth};
 
 /// The side of the window \[m\].
 const SIDE: f64 = 4.0;

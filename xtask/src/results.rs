@@ -6,11 +6,12 @@ use crate::reliability_charts;
 use crate::{certificate_file, partial};
 use anyhow::Result;
 use covmap::{Cell, CoverageMap};
-use covmap_explore::{CutOff, Run, Summary, Truth};
+use covmap_explore::Run;
 use covmap_fit::{ExampleScore, Reliability};
 use covmap_io::{
     MapCounts, MapThresholds, OutputFolder, Replace, save_map_server, write_file, write_json,
 };
+use covmap_lab::{Summary, Truth};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -54,19 +55,11 @@ pub(crate) fn write(
     seconds: f64,
     hash: String,
 ) -> Result<(Written, MapCounts)> {
-    let Task { world, mission, seed, thresholds, reader } = task;
+    let Task { world, experiment, thresholds, reader } = task;
+    let mission = &experiment.mission;
     let truth = Truth::new(world, mission);
     let map = &*reader.read(&run.map)?;
-    let score = truth.score(map, &truth.scored_cells(world, mission, run));
-    let summary = Summary::new(
-        world.name(),
-        &mission.config,
-        *seed,
-        run,
-        (&score, CutOff::new(&truth, mission, run)),
-        seconds,
-        hash,
-    );
+    let summary = experiment.summary((world, &truth), (run, map), (seconds, hash));
 
     let is_inside = |cell| mission.outside.get(cell) == Some(&false);
     let counts = write_map(folder, (&run.map, map), thresholds, is_inside)?;

@@ -1,7 +1,8 @@
 //! Where the robot of a run drove between its scans, from the run's trace.
 
 use covmap::{Cell, Grid};
-use covmap_explore::{Event, TraceHeader, standing_place};
+use covmap_explore::{Event, standing_place};
+use covmap_lab::TraceHeader;
 use nalgebra::{Isometry2, Point2};
 use std::collections::VecDeque;
 

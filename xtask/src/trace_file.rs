@@ -3,8 +3,9 @@
 use crate::input::about;
 use anyhow::{Result, anyhow};
 use covmap::CoverageMap;
-use covmap_explore::{Event, TRACE_VERSION, TraceHasher, TraceHeader};
+use covmap_explore::{Event, TraceHasher};
 use covmap_io::{FileError, JsonLines, read_json, read_json_lines};
+use covmap_lab::{TRACE_VERSION, TraceHeader};
 use serde::Deserialize;
 use std::fs::File;
 use std::io::BufWriter;

@@ -1,8 +1,7 @@
 //! What is to be explored, and from where.
 
-use crate::{Config, ConfigError};
+use crate::{ParameterError, Parameters};
 use covmap::{Cell, Grid, Raster, short};
-use covmap_world::World;
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
 
@@ -35,31 +34,12 @@ impl Limits {
 /// Why a mission cannot be begun.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MissionError {
-    /// The configuration is invalid.
+    /// A parameter is invalid.
     #[error(transparent)]
-    Config(#[from] ConfigError),
+    Parameters(#[from] ParameterError),
     /// The start pose is not finite or not in the extent.
     #[error("the start ({}, {}) lies outside of the world", short(.0), short(.1))]
     StartOutside(f64, f64),
-    /// Something is where the robot should start.
-    #[error(
-        "the robot of radius {radius} m cannot stand at the start ({}, {}): the next obstacle is {clearance:.3} m from there",
-        short(x),
-        short(y)
-    )]
-    StartOccupied {
-        /// Start.
-        x: f64,
-        /// Start.
-        y: f64,
-        /// The robot's radius \[m\].
-        radius: f64,
-        /// The distance to the nearest solid \[m\].
-        clearance: f64,
-    },
-    /// No cell of the world is free.
-    #[error("a robot of radius {0} m fits nowhere in this world")]
-    NoStart(f64),
     /// The distance between scans while driving is impossible.
     #[error("measuring while driving every {} m: it must be at least 0.01 m, at most 1e6 m", short(.0))]
     WhileDriving(f64),
@@ -69,30 +49,14 @@ pub enum MissionError {
     /// The grids of a mission differ.
     #[error("the grid, and the cells that are outside, are not of the configuration's resolution of {} m", short(.0))]
     Grids(f64),
-    /// What is inside is no list of runs of cells.
-    #[error(
-        "inside[{number}]: ({first}, {next}) is no run of cells after {end} in a grid of {cells}"
-    )]
-    Inside {
-        /// Which run.
-        number: usize,
-        /// Its first cell.
-        first: usize,
-        /// The first cell past it.
-        next: usize,
-        /// The first cell past the one before.
-        end: usize,
-        /// How many cells the grid has.
-        cells: usize,
-    },
 }
 
-/// The environment's extent on its grid, the start, and the configuration: all that the
+/// The environment's extent on its grid, the start, and the parameters: all that the
 /// robot is told.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mission {
-    /// The configuration.
-    pub config: Config,
+    /// The parameters.
+    pub config: Parameters,
     /// The grid of the map.
     pub grid: Grid,
     /// The cells outside the extent of the environment.
@@ -104,42 +68,8 @@ pub struct Mission {
 }
 
 impl Mission {
-    /// The mission to explore a world; from the world's own start, or, if it gives none,
-    /// from its roomiest place, if `start` is `None`.
-    ///
-    /// # Errors
-    /// If the configuration is invalid or the robot cannot stand at the start.
-    pub fn new(
-        world: &World,
-        config: &Config,
-        start: Option<Isometry2<f64>>,
-        limits: Limits,
-    ) -> Result<Self, MissionError> {
-        config.build()?;
-        limits.validate()?;
-        let grid = world.grid(config.resolution).map_err(ConfigError::from)?;
-        let radius = config.robot.radius;
-        let start = match start.or_else(|| world.given_start()) {
-            Some(start) => start,
-            None => world
-                .default_start(&world.coverage(&grid), radius)
-                .ok_or(MissionError::NoStart(radius))?,
-        };
-        let at = Point2::from(start.translation.vector);
-        let extent = Extent { low: world.lower_left(), high: world.lower_left() + world.size() };
-        if !extent.holds(at) || !start.rotation.angle().is_finite() {
-            return Err(MissionError::StartOutside(at.x, at.y));
-        }
-        let clearance = world.clearance(at);
-        if clearance < radius {
-            return Err(MissionError::StartOccupied { x: at.x, y: at.y, radius, clearance });
-        }
-        let outside = Raster::from_fn(grid, |cell| !extent.holds(grid.center(cell)));
-        Ok(Self { config: config.clone(), grid, outside, start, limits })
-    }
-
     /// Checks what must hold of a mission that anybody may have put together, but for its
-    /// configuration ([`Config::build`]). [`explore`](crate::explore()) calls it.
+    /// parameters ([`Parameters::build`]). [`explore`](crate::explore()) calls it.
     ///
     /// # Errors
     /// If a limit is impossible, the grids do not fit, or the start is not in the grid.
@@ -162,16 +92,4 @@ impl Mission {
 /// does not get there, so that it is `cramped`, on the start itself.
 pub fn standing_place(grid: &Grid, start: Point2<f64>, cramped: bool, cell: Cell) -> Point2<f64> {
     if cramped && grid.cell_at(start) == Some(cell) { start } else { grid.center(cell) }
-}
-
-/// The rectangle that is to be explored.
-struct Extent {
-    low: Point2<f64>,
-    high: Point2<f64>,
-}
-
-impl Extent {
-    fn holds(&self, p: Point2<f64>) -> bool {
-        (self.low.x..=self.high.x).contains(&p.x) && (self.low.y..=self.high.y).contains(&p.y)
-    }
 }

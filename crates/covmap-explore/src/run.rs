@@ -4,8 +4,7 @@ use crate::{Event, Mission, MissionError, Robot, standing_place};
 use covmap::{Cell, Change, CoverageMap, Raster};
 use covmap_model::{Body, BodyEvent, Looks, SensorModel};
 use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Promise, Reach, turns};
-use covmap_sonar::{Range, Scan};
-use covmap_world::Drive;
+use covmap_sonar::{Drive, Range, Scan};
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
@@ -155,10 +154,10 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
             config.robot.radius,
             start.rotation.angle(),
         )
-        .map_err(crate::ConfigError::from)?;
+        .map_err(crate::ParameterError::from)?;
         let map = CoverageMap::new(*grid, config.model.bins)
             .map_err(|_| covmap_model::ModelError::Bins(config.model.bins))
-            .map_err(crate::ConfigError::from)?;
+            .map_err(crate::ParameterError::from)?;
         let at = Point2::from(start.translation.vector);
         let cell = grid.cell_at(at).ok_or(MissionError::StartOutside(at.x, at.y))?;
         Ok(Self {

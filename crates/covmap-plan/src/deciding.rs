@@ -114,8 +114,8 @@ impl Planner {
         let largest = |records: &[CandidateRecord]| {
             GAIN_TOLERANCE * records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max)
         };
-        if let Score::Weighted(_) = score {
-            // Eq. (16) divides by the largest gain: this one first.
+        if score != Score::Closest {
+            // Eq. (16) divides by the largest gain, as does what is told of IG: this one first.
             self.settle(contest, &all, 1, |record| record.gain, largest);
         }
         let off = |records: &[CandidateRecord]| score.uncertainty(records, GAIN_TOLERANCE);

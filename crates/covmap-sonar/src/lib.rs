@@ -22,8 +22,10 @@
 //! assert!(ring.fits(&scan));
 //! ```
 
+mod drive;
 mod ring;
 mod scan;
 
+pub use drive::Drive;
 pub use ring::{Beam, RingError, RingSpecification, SensorSpecification, SonarRing};
 pub use scan::{Range, Scan};

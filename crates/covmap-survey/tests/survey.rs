@@ -1,4 +1,5 @@
 //! The survey of simulated rooms, whose walls are known.
+#![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
 use covmap::{Cell, Grid};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};

@@ -2,24 +2,13 @@
 
 use crate::geometry::Face;
 use crate::world::World;
+use covmap_sonar::Drive;
 use nalgebra::{Point2, Vector2};
 
 /// A disc touches what is nearer than its radius by this [m].
 const CONTACT: f64 = 1e-9;
 /// Driving stops this far before contact [m].
 const HAIR: f64 = 1e-6;
-
-/// How a drive ended.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Drive {
-    /// At its goal.
-    Arrived,
-    /// Before something solid.
-    Bumped {
-        /// The last place without contact, a micrometre before it \[m\].
-        at: Point2<f64>,
-    },
-}
 
 impl World {
     /// Drives a disc straight from one point to another; it stops before it touches a solid.

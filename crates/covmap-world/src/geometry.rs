@@ -3,7 +3,7 @@
 
 mod exposed;
 mod face;
-pub(crate) mod feature;
+mod feature;
 mod index;
 
 pub use crate::coverage::Solids;
@@ -11,5 +11,5 @@ pub use crate::outline::{Outline, outlines};
 pub use crate::sight::cells_along;
 pub(crate) use exposed::Exposed;
 pub use face::Face;
-pub(crate) use feature::{Feature, Kind};
+pub(crate) use feature::{Feature, Kind, between, of_joint};
 pub use index::{Bounds, Index};

@@ -1,7 +1,7 @@
 //! The truth: simulated worlds, their echoes, driving, and the exact coverage of every cell.
 //!
-//! The stand-in for building and robot of Stachniss & Burgard (2003), section 5: a [`World`],
-//! or the [`survey`](mod@survey) of a real place. This crate knows nothing of sensor models.
+//! The stand-in for building and robot of Stachniss & Burgard (2003), section 5: a [`World`]. This crate
+//! knows nothing of sensor models.
 //!
 //! # Units
 //! Metres, radians counter-clockwise, seconds; coverage in [0, 1].
@@ -32,7 +32,6 @@ mod sight;
 mod sonar;
 mod world;
 
-pub use drive::Drive;
 pub use error::{MAX_EXTENT, MAX_OBSTACLES, MIN_LENGTH, WorldError};
 pub use scenario::{Extent, Obstacle, Scenario, Shape, Start, Surface};
 pub use sight::Seen;

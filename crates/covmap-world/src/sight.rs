@@ -1,9 +1,9 @@
 //! What a robot can reach and see in truth: the yardstick of a run.
 
-use crate::drive::Drive;
 use crate::scenario::Surface;
 use crate::world::World;
 use covmap::{Cell, Grid, Raster, STEPS, Steps, neighbour};
+use covmap_sonar::Drive;
 use nalgebra::{Isometry2, Point2, Vector2};
 use rayon::prelude::*;
 use std::f64::consts::TAU;

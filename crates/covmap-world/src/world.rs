@@ -1,7 +1,7 @@
 //! The world itself: faces, solids and what they enclose.
 
 use crate::error::{MAX_BURIALS, MAX_EXTENT, MAX_HEADING, MIN_LENGTH, WorldError};
-use crate::geometry::{Bounds, Exposed, Face, Feature, Index, feature};
+use crate::geometry::{Bounds, Exposed, Face, Feature, Index, between, of_joint};
 use crate::moved::beyond_sides;
 use crate::outline::{Outline, distinct, outlines};
 use crate::raster_world;
@@ -184,7 +184,7 @@ impl World {
             left.map(|((_, face), exposed)| (face, exposed)).unzip();
         let boxes: Vec<Bounds> = faces.iter().map(Face::bounds).collect();
         (self.faces, self.index) = (faces, Index::new(self.low, &boxes));
-        features.extend(feature::between(&self.faces, &exposed, &self.index)?);
+        features.extend(between(&self.faces, &exposed, &self.index)?);
         let in_free_space =
             features.into_par_iter().filter(|(f, free)| self.touches_free_space(f.at, *free));
         let mut features: Vec<Feature> = in_free_space.map(|(feature, _)| feature).collect();
@@ -331,7 +331,7 @@ fn joints(rings: &[(usize, Face)], exposed: &[Exposed]) -> Vec<(Feature, Vector2
     for ring in rings.chunk_by(|(ring, _), (next, _)| ring == next) {
         let after = ring.iter().cycle().skip(1);
         for (((_, face), (_, next)), exposed) in ring.iter().zip(after).zip(&mut exposed) {
-            let joint = feature::of_joint(face, next).filter(|_| exposed.holds(face.length));
+            let joint = of_joint(face, next).filter(|_| exposed.holds(face.length));
             found.extend(joint.map(|joint| (joint, face.normal() + next.normal())));
         }
     }

@@ -5,7 +5,8 @@ use super::situation::{SEED, Situation};
 use super::table::{Row, Table, duration};
 use super::{Measuring, tiles};
 use anyhow::{Context, Result};
-use covmap_explore::{Config, Limits, Mission, Run, SimulatedRobot, explore};
+use covmap_explore::{Limits, Mission, Run, explore};
+use covmap_lab::{Config, SimulatedRobot};
 use covmap_plan::{CandidateRecord, Decision, Reason, StallRule, Strategy};
 use covmap_world::World;
 use nalgebra::Point2;
@@ -48,7 +49,7 @@ pub(super) fn for_ever(config: &Config) -> Config {
 /// An exploration up to some number of scans.
 pub(super) fn explored(world: &World, config: &Config, scans: usize) -> Result<(Mission, Run)> {
     let limits = Limits { while_driving: None, max_scans: Some(scans) };
-    let mission = Mission::new(world, config, None, limits)?;
+    let mission = covmap_lab::mission(world, config, None, limits)?;
     let mut robot = SimulatedRobot::new(world, config, SEED)?;
     let run = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(()))?;
     Ok((mission, run))
@@ -124,7 +125,7 @@ pub(super) fn large(
     progress.say(&format!("{side} × {side} cells {update}: measuring in a part of it …"));
     let world = tiles::offices(side, config.sonar.surface)?;
     let limits = Limits { while_driving: None, max_scans: None };
-    let mission = Mission::new(&world, config, None, limits)?;
+    let mission = covmap_lab::mission(&world, config, None, limits)?;
     let for_ever = for_ever(config);
     let mut situation = Situation::new(&world, &mission, &for_ever, Clock::Core)?;
     for point in places(&world, config.robot.radius) {

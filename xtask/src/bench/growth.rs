@@ -12,7 +12,8 @@ use crate::figures::Output;
 use crate::say;
 use anyhow::{Context, Result};
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Panel, Series};
-use covmap_explore::{Config, Limits, Mission};
+use covmap_explore::Limits;
+use covmap_lab::Config;
 use covmap_model::Update;
 use std::fmt::{self, Display, Formatter};
 use std::path::Path;
@@ -149,7 +150,7 @@ pub(super) fn point(config: &Config, point: Point) -> Result<()> {
     let config = adapted(&for_ever(config), point);
     let world = tiles::offices(point.side, config.sonar.surface)?;
     let limits = Limits { while_driving: None, max_scans: None };
-    let mission = Mission::new(&world, &config, None, limits)?;
+    let mission = covmap_lab::mission(&world, &config, None, limits)?;
     let before = resident();
     let mut situation = Situation::new(&world, &mission, &config, Clock::Core)?;
     for place in places(&world, config.robot.radius) {

@@ -3,12 +3,14 @@
 use super::clock::Clock;
 use anyhow::{Context, Result};
 use covmap::{Cell, CoverageMap, Grid};
-use covmap_explore::{Config, Mission, Robot, Run, SimulatedRobot};
+use covmap_explore::{Mission, Robot, Run};
 use covmap_gain::{Stencil, expected_information_gain};
+use covmap_lab::{Config, SimulatedRobot};
 use covmap_model::{Looks, SensorModel, integrate_body};
 use covmap_plan::{Decision, Planner};
+use covmap_sonar::Drive;
 use covmap_sonar::Scan;
-use covmap_world::{Drive, World};
+use covmap_world::World;
 use nalgebra::{Isometry2, Point2};
 
 /// The seed of all noise.

@@ -4,10 +4,8 @@ use super::paths::{Paths, driven, millimetres, rounded};
 use super::plan::{Job, Plan};
 use super::record::{RunRecord, Value, values};
 use anyhow::Result;
-use covmap_explore::{
-    Accuracy, Config, CutOff, Ending, Event, Limits, Mission, SimulatedRobot, Summary, Tally,
-    TraceHasher, TraceHeader, Truth, View, explore,
-};
+use covmap_explore::{Ending, Event, Limits, TraceHasher, View};
+use covmap_lab::{Accuracy, Config, Experiment, Tally, Truth};
 use covmap_plan::Strategy;
 use covmap_world::{Extent, Scenario, Surface, World};
 use cpu_time::ThreadTime;
@@ -31,10 +29,9 @@ pub(crate) struct Done {
 
 /// Does one run; `None` if it is told to stop before its end.
 pub(crate) fn execute(plan: &Plan, job: &Job, watch: &mut Watch<'_>) -> Result<Option<Done>> {
-    let mission = plan.mission(job)?;
-    let world = &plan.cases[job.case].world;
+    let (world, experiment) = (&plan.cases[job.case].world, plan.experiment(job)?);
     let key = job.planned.key.clone();
-    let out = measure(world, &mission, key.seed, plan.keep_paths, watch)?;
+    let out = measure(world, &experiment, plan.keep_paths, watch)?;
     Ok(out.map(|(values, times, paths)| Done { record: RunRecord { key, values, times }, paths }))
 }
 
@@ -42,17 +39,16 @@ type Measured = (IndexMap<String, Value>, IndexMap<String, f64>, Option<Paths>);
 
 fn measure(
     world: &World,
-    mission: &Mission,
-    seed: u64,
+    experiment: &Experiment,
     keep_paths: bool,
     watch: &mut Watch<'_>,
 ) -> Result<Option<Measured>> {
     let begun = ThreadTime::now();
+    let mission = &experiment.mission;
     let truth = Truth::new(world, mission);
     let prepared = begun.elapsed();
     let mut hasher = TraceHasher::default();
-    hasher.add(&TraceHeader::new(mission, world.name(), seed));
-    let mut robot = SimulatedRobot::new(world, &mission.config, seed)?;
+    hasher.add(&experiment.header(world));
     let mut tally = Tally::new(mission)?;
     let mut deciding = Duration::ZERO;
     let (mut explored, mut look_at) = (Vec::new(), 0.0);
@@ -61,7 +57,7 @@ fn measure(
     let mut aside = Duration::ZERO;
     let begun = ThreadTime::now();
     let mut last = ThreadTime::now();
-    let run = explore(mission, &mut robot, &mut |event, view| {
+    let run = experiment.explore(world, &mut |event, view| {
         let now = ThreadTime::now();
         hasher.add(event);
         match event {
@@ -87,18 +83,9 @@ fn measure(
     let scoring = ThreadTime::now();
     hasher.add_bytes(&run.map.to_bytes());
     let scored = truth.scored_cells(world, mission, &run);
-    let score = truth.score(&run.map, &scored);
     let accuracy = Accuracy::new(&truth, mission, &run.map, &scored);
     let hash = hasher.finish();
-    let summary = Summary::new(
-        world.name(),
-        &mission.config,
-        seed,
-        &run,
-        (&score, CutOff::new(&truth, mission, &run)),
-        seconds,
-        hash,
-    );
+    let summary = experiment.summary((world, &truth), (&run, &run.map), (seconds, hash));
     let mut all = values(&summary)?;
     let extra = accuracy.named().into_iter().chain(tally.finish(&truth.observable).named());
     all.extend(extra.map(|(name, number)| (name.to_owned(), Value::Number(number))));
@@ -129,8 +116,8 @@ pub(crate) fn numbers() -> Vec<String> {
     let limits = Limits { max_scans: Some(1), ..Limits::default() };
     let measured = || -> Result<Option<Measured>> {
         let world = World::from_scenario(&closet, Surface::Rough)?;
-        let mission = Mission::new(&world, &config, None, limits)?;
-        measure(&world, &mission, 1, false, &mut |_, _| ControlFlow::Continue(()))
+        let experiment = Experiment::new(&world, &config, None, limits, 1)?;
+        measure(&world, &experiment, false, &mut |_, _| ControlFlow::Continue(()))
     };
     let values = measured().ok().flatten().map(|(values, ..)| values).unwrap_or_default();
     let is_number = |(_, value): &(String, Value)| matches!(value, Value::Number(_));

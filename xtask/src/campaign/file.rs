@@ -72,7 +72,7 @@ pub(crate) struct Setting {
     #[serde(default)]
     pub(crate) max_scans: Option<usize>,
     /// Parameters that differ from the file, by their paths, such as `planner.scan_spacing`;
-    /// as [`covmap_explore::Config::overridden`] wants them.
+    /// as [`covmap_lab::Config::overridden`] wants them.
     #[serde(default)]
     pub(crate) overrides: BTreeMap<String, serde_json::Value>,
     /// Strategies of this setting, instead of the campaign's.

@@ -1,6 +1,6 @@
 //! Where a run led, and what was explored along the way.
 
-use covmap_explore::corners;
+use covmap_lab::corners;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 

@@ -9,8 +9,9 @@ use crate::input::{self, about};
 use crate::memory;
 use crate::world_file;
 use anyhow::{Result, anyhow, bail};
-use covmap_explore::{Config, Limits, Mission};
+use covmap_explore::{Limits, Mission};
 use covmap_io::{MAX_FILE, MapServerMap, read_bytes};
+use covmap_lab::{Config, Experiment};
 use covmap_plan::Strategy;
 use covmap_world::{Scenario, World};
 use nalgebra::Isometry2;
@@ -129,10 +130,11 @@ impl Plan {
         Ok(fits.into_iter().min().and_then(NonZeroUsize::new).unwrap_or(NonZeroUsize::MIN))
     }
 
-    /// The mission of a run.
-    pub(crate) fn mission(&self, job: &Job) -> Result<Mission> {
-        let case = &self.cases[job.case];
-        case.mission(job.strategy, case.starts[job.planned.key.start])
+    /// A run as an experiment.
+    pub(crate) fn experiment(&self, job: &Job) -> Result<Experiment> {
+        let (case, key) = (&self.cases[job.case], &job.planned.key);
+        let mission = case.mission(job.strategy, case.starts[key.start])?;
+        Ok(Experiment { mission, sonar: case.config.sonar, seed: key.seed })
     }
 }
 

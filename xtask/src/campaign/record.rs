@@ -1,7 +1,7 @@
 //! What is recorded of a run.
 
 use anyhow::Result;
-use covmap_explore::Summary;
+use covmap_lab::Summary;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use std::fmt;

@@ -2,7 +2,8 @@
 
 use super::file::Starts;
 use anyhow::{Result, anyhow, bail};
-use covmap_explore::{Config, ConfigError, drawn_starts};
+use covmap_explore::ParameterError;
+use covmap_lab::{Config, drawn_starts};
 use covmap_world::World;
 use nalgebra::{Isometry2, Vector2};
 
@@ -42,7 +43,7 @@ impl Starts {
                 bail!("starts: {count} cannot be drawn; the number must lie in 1..={MOST}")
             }
             Self::Drawn { count, seed } => {
-                let grid = world.grid(SPACING).map_err(ConfigError::from)?;
+                let grid = world.grid(SPACING).map_err(ParameterError::from)?;
                 let home = given(world, radius, SPACING)?;
                 let starts = drawn_starts(world, &grid, &home, (radius, ROOM), (*count, *seed));
                 starts.map_err(|there| {
@@ -58,7 +59,7 @@ fn given(world: &World, radius: f64, resolution: f64) -> Result<Isometry2<f64>> 
     if let Some(start) = world.given_start() {
         return Ok(start);
     }
-    let grid = world.grid(resolution).map_err(ConfigError::from)?;
+    let grid = world.grid(resolution).map_err(ParameterError::from)?;
     let start = world.default_start(&world.coverage(&grid), radius);
     start.ok_or_else(|| anyhow!("a robot of radius {radius} m fits nowhere in this world"))
 }

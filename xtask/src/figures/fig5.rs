@@ -10,7 +10,8 @@ use crate::paper::session::Series;
 use crate::pictures::Pictures;
 use anyhow::{Result, bail};
 use covmap_draw::Picture;
-use covmap_explore::{CutOff, Mission, Run, SimulatedRobot, Summary, Truth, explore};
+use covmap_explore::Run;
+use covmap_lab::{Experiment, Truth};
 use covmap_plan::Strategy;
 use covmap_world::World;
 use nalgebra::Point2;
@@ -39,52 +40,43 @@ pub(crate) fn write(
         let Some(job) = plan.jobs.iter().find(|job| is_first(&job.planned.key)) else {
             return Ok(());
         };
-        let (run, mission) = repeat(&plan, job, session, &series.dir)?;
-        let pictured = Pictured { world: &plan.cases[job.case].world, mission, run };
-        let picture = pictured.picture(strategy, job.planned.key.seed, occupancy)?;
+        let (run, experiment) = repeat(&plan, job, session, &series.dir)?;
+        let pictured = Pictured { world: &plan.cases[job.case].world, experiment, run };
+        let picture = pictured.picture(strategy, occupancy)?;
         map_figure::write_picture(output, &format!("figure5{letter}{suffix}"), &picture)
     };
     MAPS.into_par_iter().map(draw).collect()
 }
 
 /// Does a run again, with the path that was recorded of it.
-fn repeat(plan: &Plan, job: &Job, session: &Session<'_>, dir: &Path) -> Result<(Run, Mission)> {
+fn repeat(plan: &Plan, job: &Job, session: &Session<'_>, dir: &Path) -> Result<(Run, Experiment)> {
     let key = &job.planned.key;
     let recorded = load_paths(dir, key)?;
-    let (world, mission) = (&plan.cases[job.case].world, plan.mission(job)?);
-    let mut robot = SimulatedRobot::new(world, &mission.config, key.seed)?;
-    let mut run = explore(&mission, &mut robot, &mut |_, _| session.interrupt.flow())?;
+    let (world, experiment) = (&plan.cases[job.case].world, plan.experiment(job)?);
+    let mut run = experiment.explore(world, &mut |_, _| session.interrupt.flow())?;
     session.check()?;
     if driven(&run.trajectory) != recorded.driven {
         bail!("{}: {key}: is another run now; remove the folder to run it again", dir.display());
     }
     run.trajectory = recorded.driven.iter().map(|(x, y)| Point2::new(*x, *y)).collect();
-    Ok((run, mission))
+    Ok((run, experiment))
 }
 
 /// A run with where it was.
 struct Pictured<'a> {
     world: &'a World,
-    mission: Mission,
+    experiment: Experiment,
     run: Run,
 }
 
 impl Pictured<'_> {
-    fn picture(&self, strategy: Strategy, seed: u64, occupancy: bool) -> Result<Picture> {
-        let Self { world, mission, run } = self;
-        let truth = Truth::new(world, mission);
-        let score = truth.score(&run.map, &truth.scored_cells(world, mission, run));
-        let mut config = mission.config.clone();
-        config.planner.strategy = strategy;
-        let summary = Summary::new(
-            world.name(),
-            &config,
-            seed,
-            run,
-            (&score, CutOff::new(&truth, mission, run)),
-            0.0,
-            String::new(),
-        );
+    fn picture(&self, strategy: Strategy, occupancy: bool) -> Result<Picture> {
+        let Self { world, experiment, run } = self;
+        let truth = Truth::new(world, &experiment.mission);
+        let mut experiment = experiment.clone();
+        experiment.mission.config.planner.strategy = strategy;
+        let summary = experiment.summary((world, &truth), (run, &run.map), (0.0, String::new()));
+        let mission = &experiment.mission;
         let pictures =
             Pictures { mission, run, map: &run.map, how: "", truth: &truth, summary: &summary };
         if occupancy { pictures.occupancy() } else { Ok(pictures.coverage()) }

@@ -15,7 +15,7 @@ mod suffix;
 use super::output::Output;
 use crate::input;
 use anyhow::Result;
-use covmap_explore::Config;
+use covmap_lab::Config;
 use covmap_plan::Strategy;
 use moment::Moment;
 

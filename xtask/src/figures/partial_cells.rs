@@ -2,8 +2,9 @@
 
 use anyhow::Result;
 use covmap::{Cell, CoverageMap, Grid};
-use covmap_explore::{Config, Robot, SimulatedRobot};
+use covmap_explore::Robot;
 use covmap_io::parse_ron;
+use covmap_lab::{Config, SimulatedRobot};
 use covmap_model::{OccupancyGrid, OccupancyParameters, integrate};
 use covmap_sonar::Scan;
 use covmap_world::{Scenario, World};

@@ -8,7 +8,7 @@ use crate::figures::partial_cells::{self, PartialCell};
 use crate::figures::{Output, fig1, fig2, fig3, fig5, fig6, fig7};
 use crate::input;
 use anyhow::Result;
-use covmap_explore::Config;
+use covmap_lab::Config;
 use covmap_model::SensorModel;
 use covmap_plan::Strategy;
 use std::path::PathBuf;

@@ -2,10 +2,9 @@
 
 use super::session::Session;
 use anyhow::Result;
-use covmap_explore::{
-    Config, Ending, Event, Limits as Budget, Mission, SimulatedRobot, View, explore,
-};
+use covmap_explore::{Ending, Event, Limits as Budget, View, explore};
 use covmap_io::parse_ron;
+use covmap_lab::{Config, SimulatedRobot};
 use covmap_plan::Strategy;
 use covmap_sonar::Scan;
 use covmap_world::{Scenario, World};
@@ -87,7 +86,7 @@ fn trace(
     let mut config = Config { resolution: SIDE, ..config.clone() };
     config.planner.strategy = strategy;
     let budget = Budget { max_scans: Some(most), ..Budget::default() };
-    let mission = Mission::new(world, &config, None, budget)?;
+    let mission = covmap_lab::mission(world, &config, None, budget)?;
     let mut robot = SimulatedRobot::new(world, &config, 1)?;
     let on = &mut |_: &Event, _: &View<'_>| session.interrupt.flow();
     let run = explore(&mission, &mut robot, on)?;

@@ -3,7 +3,8 @@
 use super::runs::Units;
 use anyhow::Result;
 use covmap::{Class, CoverageMap};
-use covmap_explore::{Config, Robot, SimulatedRobot};
+use covmap_explore::Robot;
+use covmap_lab::{Config, SimulatedRobot};
 use covmap_model::{OccupancyGrid, OccupancyParameters, integrate};
 use covmap_sonar::Scan;
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};

@@ -1,6 +1,6 @@
 //! What can be turned at the simulated sonars.
 
-use covmap_explore::Config;
+use covmap_lab::Config;
 use covmap_sonar::RingSpecification;
 
 /// A number of the physics, with the interval in which it is searched.

@@ -1,7 +1,7 @@
 //! `fit` and `survey`.
 
 use crate::typed::{Shell, shipped};
-use covmap_explore::Config;
+use covmap_lab::Config;
 
 /// A fit that takes moments: a small room, few scans, coarse cells, two parameters.
 fn small_fit(shell: &Shell, change: impl Fn(String) -> String) {

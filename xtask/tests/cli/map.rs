@@ -2,8 +2,9 @@
 
 use crate::typed::{Shell, shipped};
 use covmap::CoverageMap;
-use covmap_explore::{Event, TraceHeader};
+use covmap_explore::Event;
 use covmap_io::{MapCell, load_map_server, read_json_lines};
+use covmap_lab::TraceHeader;
 use covmap_log::{LogOptions, LogReader, Sensor};
 use covmap_sonar::{Range, Scan, SonarRing};
 use std::fmt::Write;

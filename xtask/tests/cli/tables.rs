@@ -44,7 +44,7 @@ fn every_column_of_figure_3_sums_to_one() {
     let shell = Shell::new();
     for config in ["b21r", "paper", "sonar8"] {
         let config = shipped(&format!("configs/{config}.ron"));
-        let loaded: covmap_explore::Config = covmap_io::read_ron(&config).unwrap();
+        let loaded: covmap_lab::Config = covmap_io::read_ron(&config).unwrap();
         let behind = loaded.model.update.behind().max(0.2);
         shell.expect(&format!("model --config {config} --range 1 --out m.csv --force"), 0);
         let rows = rows(&shell, "m.csv", "cell_distance,coverage,probability");

@@ -168,8 +168,8 @@ pub(super) fn up_to_date(group: &mut GroupState, states: &[BeamState]) {
 pub(super) fn average(answers: &[BeamAnswer]) -> [f64; LANES] {
     let mut sum = [0.0; LANES];
     for answer in answers {
-        for lane in 0..LANES {
-            sum[lane] += f64::from(answer.gain[lane]);
+        for (sum, gain) in sum.iter_mut().zip(&answer.gain) {
+            *sum += f64::from(*gain);
         }
     }
     sum.map(|gain| gain / as_f64(answers.len()))

@@ -1,7 +1,8 @@
 //! Driving never passes through anything.
 
 use crate::build::{any_shapes, rectangle, wall, world};
-use covmap_world::{Drive, Surface, World};
+use covmap_sonar::Drive;
+use covmap_world::{Surface, World};
 use nalgebra::{Point2, Vector2};
 use proptest::prelude::*;
 

@@ -2,12 +2,13 @@
 
 use anyhow::{Context, Result};
 use covmap::{Cell, CoverageMap, Grid, Raster};
-use covmap_explore::{Config, Event, Limits, Mission, SimulatedRobot, explore};
+use covmap_explore::{Event, Limits, explore};
 use covmap_gain::{
     BeamStencil, GainCache, NEGLIGIBLE, RangeLikelihood, RangePrediction, Stencil, Upkeep,
     ViewPoints, expected_information_gain, imagined_causes, range_likelihood, reflection,
 };
 use covmap_io::parse_ron;
+use covmap_lab::{Config, SimulatedRobot};
 use covmap_model::SensorModel;
 use covmap_plan::{CandidateRecord, Decision};
 use covmap_sonar::SonarRing;
@@ -51,7 +52,7 @@ impl Moment {
         let scenario = parse_ron(Path::new(WORLD), include_str!("../../../../scenarios/lab.ron"))?;
         let world = World::from_scenario(&scenario, config.sonar.surface)?;
         let limits = Limits { while_driving: None, max_scans: None };
-        let mission = Mission::new(&world, config, None, limits)?;
+        let mission = covmap_lab::mission(&world, config, None, limits)?;
         let mut robot = SimulatedRobot::new(&world, config, SEED)?;
         let (ring, model) = config.build()?;
         let mut found = None;

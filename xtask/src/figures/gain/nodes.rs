@@ -4,8 +4,8 @@ use super::moment::Moment;
 use super::one_cell::{Gained, at_nodes, gains, kinds};
 use anyhow::{Context, Result};
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
-use covmap_explore::Config;
 use covmap_gain::RangeInterpolation;
+use covmap_lab::Config;
 
 /// The ring whose cells are shown.
 const RING: usize = 6;

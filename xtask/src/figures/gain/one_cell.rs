@@ -6,10 +6,10 @@
 
 use anyhow::{Context, Result};
 use covmap::{CoverageMap, Grid};
-use covmap_explore::Config;
 use covmap_gain::{
     GainCache, RangePrediction, Stencil, Upkeep, ViewPoints, expected_information_gain,
 };
+use covmap_lab::Config;
 use covmap_model::{ModelParameters, SensorModel};
 use covmap_sonar::SonarRing;
 use nalgebra::Point2;

@@ -4,8 +4,8 @@ use super::{all_close, close, mission};
 use covmap::Cell;
 use covmap_explore::{Ending, Event, Limits, Mission, Robot, Run, explore};
 use covmap_plan::{BodyEvidence, CellStatus, Reach, Strategy};
+use covmap_sonar::Drive;
 use covmap_sonar::Range;
-use covmap_world::Drive;
 use nalgebra::{Isometry2, Point2};
 use std::ops::ControlFlow;
 

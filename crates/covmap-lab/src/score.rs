@@ -1,7 +1,7 @@
 //! A map against the truth.
 
-use crate::{Mission, Run};
 use covmap::{Cell, CoverageMap, Raster, Steps, is_scored};
+use covmap_explore::{Mission, Run};
 use covmap_statistics::{LIKELIHOOD_FLOOR, log_likelihood};
 use covmap_world::World;
 use nalgebra::Point2;

@@ -1,7 +1,8 @@
 //! Decisions in the office: ten more scans and choices, half a minute into its exploration.
 #![allow(missing_docs, clippy::unwrap_used, reason = "a benchmark")]
 
-use covmap_explore::{Config, Limits, Mission, SimulatedRobot, explore};
+use covmap_explore::{Limits, explore};
+use covmap_lab::{Config, SimulatedRobot};
 use covmap_world::{Scenario, World};
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::ops::ControlFlow;
@@ -15,7 +16,7 @@ fn bench(c: &mut Criterion) {
     let mut group = c.benchmark_group("office, r = .1, IG_CL(.3)");
     for scans in [100, 110] {
         let limits = Limits { while_driving: None, max_scans: Some(scans) };
-        let mission = Mission::new(&world, &config, None, limits).unwrap();
+        let mission = covmap_lab::mission(&world, &config, None, limits).unwrap();
         group.bench_function(format!("{scans} scans and decisions"), |b| {
             b.iter(|| {
                 let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();

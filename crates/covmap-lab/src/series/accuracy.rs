@@ -1,8 +1,9 @@
 //! How accurate a map is, by the class of the cells, and how certain.
 
+use crate::Truth;
 use crate::score::mean;
-use crate::{Mission, Truth};
 use covmap::{Cell, Class, CoverageMap};
+use covmap_explore::Mission;
 use covmap_statistics::crps;
 
 /// Above this entropy a cell is not explored well enough in Table 1 \[nats\].

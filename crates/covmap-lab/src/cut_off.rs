@@ -1,7 +1,8 @@
 //! What a run left unseen of what its robot could truly reach.
 
-use crate::{Mission, Run, Truth};
+use crate::Truth;
 use covmap::Cell;
+use covmap_explore::{Mission, Run};
 use covmap_plan::Reach;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};

@@ -2,7 +2,8 @@
 
 use super::{close, map_of, mission};
 use covmap::Raster;
-use covmap_explore::{Config, Limits, Mission, MissionError, Tally, TraceHeader};
+use covmap_explore::Limits;
+use covmap_lab::{Config, SetupError, Tally, TraceHeader};
 use covmap_sonar::{Range, Scan};
 use covmap_world::{Extent, Scenario, World};
 use nalgebra::Isometry2;
@@ -33,7 +34,7 @@ fn measurements_are_counted_until_a_cell_is_explored_and_in_all() {
 fn a_header_tells_what_is_outside() {
     let mut mission = mission(9, &[0.0], 3.0, Limits::default());
     mission.outside = Raster::from_fn(mission.grid, |cell| [0, 3, 4, 8].contains(&cell.x));
-    let header = TraceHeader::new(&mission, "corridor", 7);
+    let header = TraceHeader::new(&mission, &Config::b21r().sonar, "corridor", 7);
     assert_eq!(header.inside, [(1, 3), (5, 8)]);
     assert_eq!((header.seed, header.mission().unwrap()), (7, mission));
 }
@@ -46,11 +47,11 @@ fn a_mission_starts_where_the_robot_fits_and_ends_at_the_extent() {
     let world = World::from_scenario(&scenario, config.sonar.surface).unwrap();
     let at = |x: f64| {
         let start = Isometry2::new([x, 1.0].into(), 0.0);
-        Mission::new(&world, &config, Some(start), Limits::default())
+        covmap_lab::mission(&world, &config, Some(start), Limits::default())
     };
     // The robot's radius is .27 m, the wall is at 0.
-    assert!(matches!(at(0.26), Err(MissionError::StartOccupied { .. })));
-    assert!(matches!(at(-0.1), Err(MissionError::StartOutside(..))));
+    assert!(matches!(at(0.26), Err(SetupError::StartOccupied { .. })));
+    assert!(matches!(at(-0.1), Err(SetupError::StartOutside(..))));
     // 8 × 6 cells of the grid, which has a margin, lie inside.
     let outside = at(0.28).unwrap().outside;
     assert_eq!(outside.values().iter().filter(|outside| !**outside).count(), 48);

@@ -1,7 +1,8 @@
 //! How often every cell was measured, and how often until it was explored.
 
-use crate::{ConfigError, Mission};
+use crate::ConfigError;
 use covmap::{CoverageMap, Raster};
+use covmap_explore::Mission;
 use covmap_model::{Counting, ScanCounts, SensorModel, intercepted};
 use covmap_sonar::Scan;
 

@@ -2,7 +2,8 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use covmap::{Cell, CoverageMap};
-use covmap_explore::{Config, Ending, Limits, Mission, Robot, Run, SimulatedRobot, explore};
+use covmap_explore::{Ending, Limits, Robot, Run, explore};
+use covmap_lab::{Config, SimulatedRobot};
 use covmap_model::{Body, Looks, SensorModel};
 use covmap_plan::{CellStatus, Promise};
 use covmap_sonar::Scan;
@@ -57,7 +58,7 @@ fn looked_again(building: &str, resolution: f64, seed: u64, most: usize) -> (usi
     let scenario: Scenario = ron::from_str(&text).unwrap();
     let config = Config { resolution, ..Config::b21r() };
     let world = World::from_scenario(&scenario, config.sonar.surface).unwrap();
-    let mission = Mission::new(&world, &config, None, Limits::default()).unwrap();
+    let mission = covmap_lab::mission(&world, &config, None, Limits::default()).unwrap();
     let mut robot = SimulatedRobot::new(&world, &config, seed).unwrap();
     let run = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(())).unwrap();
     assert_eq!(run.ending, Ending::Explored);
@@ -88,7 +89,7 @@ fn one_more_scan_resolves_hardly_a_cell_that_was_given_up() {
 }
 
 #[test]
-#[ignore = "minutes: cargo test --release -p covmap-explore --test exhausted -- --ignored --nocapture"]
+#[ignore = "minutes: cargo test --release -p covmap-lab --test exhausted -- --ignored --nocapture"]
 #[allow(clippy::print_stdout, reason = "the measured table, with --nocapture")]
 fn one_more_scan_resolves_hardly_a_cell_in_any_building() {
     let buildings =

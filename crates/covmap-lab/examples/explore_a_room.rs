@@ -1,11 +1,12 @@
 //! Explores a room with a pillar to its end, and counts what the certificate says.
 //!
 //! ```text
-//! cargo run -p covmap-explore --example explore_a_room
+//! cargo run -p covmap-lab --example explore_a_room
 //! ```
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
-use covmap_explore::{CellCounts, Config, Event, Limits, Mission, SimulatedRobot, explore};
+use covmap_explore::{Event, Limits, explore};
+use covmap_lab::{CellCounts, Config, SimulatedRobot};
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use std::error::Error;
 use std::io::Write;
@@ -24,7 +25,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }],
     };
     let world = World::from_scenario(&scenario, config.sonar.surface)?;
-    let mission = Mission::new(&world, &config, None, Limits::default())?;
+    let mission = covmap_lab::mission(&world, &config, None, Limits::default())?;
     let mut robot = SimulatedRobot::new(&world, &config, 1)?;
 
     // All that happens comes by here; `ControlFlow::Break` would end the run.

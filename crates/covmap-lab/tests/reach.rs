@@ -1,12 +1,12 @@
 //! The robot is never shut in by its own rules; and where it is shut in, the run says so.
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
-use covmap_explore::{
-    Config, CutOff, Ending, Limits, Mission, Robot, Run, Score, SimulatedRobot, Truth, explore,
-};
+use covmap_explore::{Ending, Limits, Mission, Robot, Run, explore};
+use covmap_lab::{Config, CutOff, Score, SimulatedRobot, Truth};
 use covmap_plan::{CellStatus, Strategy};
+use covmap_sonar::Drive;
 use covmap_sonar::Range;
-use covmap_world::{Drive, Extent, Obstacle, Scenario, Shape, Surface, World};
+use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use nalgebra::{Isometry2, Point2};
 use std::ops::ControlFlow;
 
@@ -45,7 +45,7 @@ fn run(
     seed: u64,
     limits: Limits,
 ) -> (Run, Score, CutOff) {
-    let mission = Mission::new(world, config, start, limits).unwrap();
+    let mission = covmap_lab::mission(world, config, start, limits).unwrap();
     let mut robot = SimulatedRobot::new(world, config, seed).unwrap();
     run_with(world, &mission, &mut robot)
 }
@@ -89,7 +89,8 @@ fn a_door_that_is_wide_enough_is_a_door_at_any_angle() {
         let world = slanted_door(degrees);
         let start = if degrees < 60.0 { at(3.0, 1.2) } else { at(1.2, 3.0) };
         let start = if degrees == 135.0 { at(1.5, 1.5) } else { start };
-        let mission = Mission::new(&world, &config(strategy), start, Limits::default()).unwrap();
+        let mission =
+            covmap_lab::mission(&world, &config(strategy), start, Limits::default()).unwrap();
         // Truly, it gets to both sides.
         let reachable = Truth::new(&world, &mission).reachable;
         let side = |p: Point2<f64>| {
@@ -135,7 +136,7 @@ impl Robot for Broken<'_> {
 fn run_broken(says: Option<Range>, drives: usize) -> Run {
     let world = world((4.0, 4.0), Vec::new());
     let config = config(Strategy::Cl);
-    let mission = Mission::new(&world, &config, at(2.1, 2.1), Limits::default()).unwrap();
+    let mission = covmap_lab::mission(&world, &config, at(2.1, 2.1), Limits::default()).unwrap();
     let robot = SimulatedRobot::new(&world, &config, 1).unwrap();
     run_with(&world, &mission, &mut Broken { robot, says, drives }).0
 }
@@ -204,7 +205,7 @@ impl Robot for Haunted<'_> {
 fn what_is_cut_off_is_named_with_what_cuts_it_off() {
     let world = slanted_door(90.0);
     let config = config(Strategy::Cl);
-    let mission = Mission::new(&world, &config, at(1.5, 3.0), Limits::default()).unwrap();
+    let mission = covmap_lab::mission(&world, &config, at(1.5, 3.0), Limits::default()).unwrap();
     let mut robot = Haunted(SimulatedRobot::new(&world, &config, 1).unwrap());
     let (run, score, cut_off) = run_with(&world, &mission, &mut robot);
     assert_eq!(run.ending, Ending::Explored);

@@ -9,9 +9,8 @@
 
 use super::{all_close, close, map_of, mission};
 use covmap::{Cell, CoverageMap, Raster, Steps};
-use covmap_explore::{
-    Accuracy, CellCounts, Config, Limits, Mission, SimulatedRobot, Truth, explore,
-};
+use covmap_explore::{Limits, explore};
+use covmap_lab::{Accuracy, CellCounts, Config, SimulatedRobot, Truth};
 use covmap_plan::CellStatus;
 use covmap_world::{Extent, Scenario, World};
 use std::ops::ControlFlow;
@@ -122,7 +121,7 @@ fn the_scored_cells_are_what_a_run_could_see_and_one_solid_layer_but_not_what_it
     let config = Config { resolution: 0.2, ..Config::b21r() };
     let world = World::from_scenario(&scenario, config.sonar.surface).unwrap();
     let limits = Limits { max_scans: Some(3), ..Limits::default() };
-    let mission = Mission::new(&world, &config, None, limits).unwrap();
+    let mission = covmap_lab::mission(&world, &config, None, limits).unwrap();
     let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
     let run = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(())).unwrap();
     let truth = Truth::new(&world, &mission);

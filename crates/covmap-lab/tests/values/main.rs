@@ -7,7 +7,8 @@ mod scores;
 mod tallies;
 
 use covmap::{CoverageMap, Grid, Raster};
-use covmap_explore::{Config, Limits, Mission, RobotParameters};
+use covmap_explore::{Limits, Mission, RobotParameters};
+use covmap_lab::Config;
 use covmap_model::{
     FootprintRule, Linear, ModelParameters, NoEchoParameters, ProductParameters, Update,
 };
@@ -71,7 +72,13 @@ fn mission(cells: usize, directions: &[f64], range: f64, limits: Limits) -> Miss
     };
     let grid = Grid::new(Point2::origin(), 1.0, cells, 1).unwrap();
     let start = Isometry2::new([1.5, 0.5].into(), 0.0);
-    Mission { config, grid, outside: Raster::filled(grid, false), start, limits }
+    Mission {
+        config: config.parameters(),
+        grid,
+        outside: Raster::filled(grid, false),
+        start,
+        limits,
+    }
 }
 
 /// A map of these posteriors; unknown where there is none.

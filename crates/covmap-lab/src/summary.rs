@@ -1,6 +1,7 @@
 //! The numbers of a run.
 
-use crate::{Config, CutOff, Ending, Run, Score};
+use crate::{CutOff, Score};
+use covmap_explore::{Ending, Parameters, Run};
 use covmap_plan::CellStatus;
 use serde::{Deserialize, Serialize};
 
@@ -83,8 +84,7 @@ impl Summary {
     /// The numbers of a run.
     pub fn new(
         world: &str,
-        config: &Config,
-        seed: u64,
+        (parameters, seed): (&Parameters, u64),
         run: &Run,
         (score, cut_off): (&Score, CutOff),
         seconds: f64,
@@ -92,8 +92,8 @@ impl Summary {
     ) -> Self {
         Self {
             world: world.to_owned(),
-            strategy: config.planner.strategy.to_string(),
-            update: config.model.update.name().to_owned(),
+            strategy: parameters.planner.strategy.to_string(),
+            update: parameters.model.update.name().to_owned(),
             seed,
             resolution: run.map.grid().resolution(),
             ending: run.ending,

@@ -1,10 +1,8 @@
 //! Whole runs in small worlds: they end, they repeat, and their certificates hold.
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
-use covmap_explore::{
-    Accuracy, Config, Ending, Event, Limits, Mission, RecordedRobot, Run, SimulatedRobot,
-    TraceHasher, TraceHeader, Truth, explore,
-};
+use covmap_explore::{Ending, Event, Limits, Mission, RecordedRobot, Run, TraceHasher, explore};
+use covmap_lab::{Accuracy, Config, SetupError, SimulatedRobot, TraceHeader, Truth};
 use covmap_plan::{CellStatus, Strategy};
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use proptest::prelude::*;
@@ -25,7 +23,7 @@ fn world(obstacles: Vec<Obstacle>) -> World {
 }
 
 fn run(world: &World, config: &Config, seed: u64, limits: Limits) -> (Run, Vec<Event>, String) {
-    let mission = Mission::new(world, config, None, limits).unwrap();
+    let mission = covmap_lab::mission(world, config, None, limits).unwrap();
     let mut robot = SimulatedRobot::new(world, config, seed).unwrap();
     let (mut events, mut hash) = (Vec::new(), TraceHasher::default());
     let run = explore(&mission, &mut robot, &mut |event, _| {
@@ -80,7 +78,7 @@ fn check_that_it_ends(
     let world = world(obstacles);
     let config = config(strategy);
     let limits = Limits { while_driving, max_scans: Some(20_000) };
-    prop_assume!(Mission::new(&world, &config, None, limits).is_ok());
+    prop_assume!(covmap_lab::mission(&world, &config, None, limits).is_ok());
     let (run, events, _) = run(&world, &config, seed, limits);
     prop_assert!(matches!(run.ending, Ending::Explored | Ending::StartBlocked), "{:?}", run.ending);
     prop_assert!(run.certificate.values().iter().all(|s| *s != CellStatus::Open));
@@ -105,7 +103,7 @@ proptest! {
     #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
-    #[ignore = "minutes: cargo test --release -p covmap-explore --test runs -- --ignored"]
+    #[ignore = "minutes: cargo test --release -p covmap-lab --test runs -- --ignored"]
     fn each_of_300_worlds_is_explored_by_every_strategy(
         obstacles in some_obstacles(), seed in 0..1000u64, while_driving in prop::option::of(0.1..0.5f64)
     ) {
@@ -146,7 +144,7 @@ fn a_recorded_run_repeats_itself() {
     let config = config(Strategy::Ig);
     let limits = Limits { while_driving: Some(0.3), max_scans: None };
     let (first, events, hash) = run(&world, &config, 5, limits);
-    let mission = Mission::new(&world, &config, None, limits).unwrap();
+    let mission = covmap_lab::mission(&world, &config, None, limits).unwrap();
     let mut robot = RecordedRobot::new(events, 24);
     let mut again = TraceHasher::default();
     let replayed = explore(&mission, &mut robot, &mut |event, _| {
@@ -163,7 +161,7 @@ fn a_budget_and_an_interruption_end_a_run() {
     let limits = Limits { while_driving: None, max_scans: Some(4) };
     let (spent, ..) = run(&world, &config, 1, limits);
     assert_eq!((spent.ending, spent.scans.len()), (Ending::BudgetSpent, 4));
-    let mission = Mission::new(&world, &config, None, Limits::default()).unwrap();
+    let mission = covmap_lab::mission(&world, &config, None, Limits::default()).unwrap();
     let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
     let stopped = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Break(())).unwrap();
     assert_eq!((stopped.ending, stopped.scans.len()), (Ending::Interrupted, 1));
@@ -182,14 +180,14 @@ fn a_robot_that_is_walled_in_says_so() {
         wall((1.8, 2.3), (0.4, 1.4)),
     ]);
     // A cell of free space is left that no robot fits into.
-    let refused = Mission::new(&world, &config(Strategy::Cl), None, Limits::default());
+    let refused = covmap_lab::mission(&world, &config(Strategy::Cl), None, Limits::default());
     assert!(refused.is_err());
 }
 
 #[test]
 fn an_empty_room_is_mapped_completely() {
     let (world, config) = (world(vec![]), config(Strategy::IgCl { alpha: 0.3 }));
-    let mission = Mission::new(&world, &config, None, Limits::default()).unwrap();
+    let mission = covmap_lab::mission(&world, &config, None, Limits::default()).unwrap();
     let (run, ..) = run(&world, &config, 1, Limits::default());
     let truth = Truth::new(&world, &mission);
     let score = truth.score(&run.map, &truth.scored_cells(&world, &mission, &run));
@@ -209,7 +207,7 @@ fn maps_of_different_runs_are_compared_over_the_same_cells_and_the_body_pins_non
         let config = config(strategy);
         let limits = Limits { max_scans: Some(scans), ..Limits::default() };
         let (run, ..) = run(&world, &config, 1, limits);
-        let mission = Mission::new(&world, &config, None, limits).unwrap();
+        let mission = covmap_lab::mission(&world, &config, None, limits).unwrap();
         let truth = Truth::new(&world, &mission);
         let cells = truth.compared_cells(config.robot.radius);
         assert!(cells.len() > 50 && cells.iter().all(|cell| !run.map.is_pinned(*cell)));
@@ -231,21 +229,21 @@ fn maps_of_different_runs_are_compared_over_the_same_cells_and_the_body_pins_non
 #[test]
 fn a_mission_that_anybody_put_together_is_checked() {
     let (world, config) = (world(vec![]), config(Strategy::Cl));
-    let good = Mission::new(&world, &config, None, Limits::default()).unwrap();
-    let header = TraceHeader::new(&good, "room", 1);
+    let good = covmap_lab::mission(&world, &config, None, Limits::default()).unwrap();
+    let header = TraceHeader::new(&good, &config.sonar, "room", 1);
     assert_eq!(header.mission(), Ok(good.clone()));
     let refuse = |mission: Mission, expected: &str| {
-        let header = TraceHeader::new(&mission, "room", 1);
+        let header = TraceHeader::new(&mission, &config.sonar, "room", 1);
         let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
         let explored = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(()));
-        for error in [header.mission().unwrap_err(), explored.unwrap_err()] {
+        for error in [header.mission().unwrap_err(), SetupError::from(explored.unwrap_err())] {
             assert!(error.to_string().contains(expected), "{error}");
         }
     };
     for step in [0.0, -1.0, 1e-12, f64::NAN, f64::INFINITY, 1e300] {
         let limits = Limits { while_driving: Some(step), max_scans: None };
         refuse(Mission { limits, ..good.clone() }, "measuring while driving every");
-        assert!(Mission::new(&world, &config, None, limits).is_err(), "{step}");
+        assert!(covmap_lab::mission(&world, &config, None, limits).is_err(), "{step}");
     }
     let limits = Limits { while_driving: None, max_scans: Some(0) };
     refuse(Mission { limits, ..good.clone() }, "max_scans is 0");

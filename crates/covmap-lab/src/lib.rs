@@ -1,0 +1,51 @@
+//! The laboratory: robots in simulated worlds, the truth about these, and scores against it.
+//!
+//! Section 5 of Stachniss & Burgard (2003). [`mission`] sets a robot into a world, [`SimulatedRobot`] senses
+//! and drives there for [`covmap_explore::explore`], and [`Truth`] says how good the map is that comes out.
+//!
+//! This crate knows nothing of files, terminals and clocks.
+//!
+//! # Units
+//! Metres, radians, nats, seconds of simulated time.
+//!
+//! ```
+//! use covmap_explore::{Ending, Limits, explore};
+//! use covmap_lab::{Config, SimulatedRobot, mission};
+//! use covmap_world::{Extent, Scenario, World};
+//! use std::ops::ControlFlow;
+//!
+//! let mut config = Config::b21r();
+//! config.resolution = 0.2;
+//! let extent = Extent { width: 3.0, height: 2.0 };
+//! let scenario = Scenario { name: "room".into(), extent, start: None, obstacles: vec![] };
+//! let world = World::from_scenario(&scenario, config.sonar.surface)?;
+//! let mission = mission(&world, &config, None, Limits::default())?;
+//! let mut robot = SimulatedRobot::new(&world, &config, 1)?;
+//! let run = explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(()))?;
+//! assert_eq!(run.ending, Ending::Explored);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod config;
+mod cut_off;
+mod experiment;
+mod memory;
+mod overridden;
+mod robot;
+mod score;
+mod series;
+mod setup;
+mod summary;
+mod trace;
+
+pub use config::{Config, ConfigError};
+pub use cut_off::CutOff;
+pub use experiment::Experiment;
+pub use memory::run_bytes;
+pub use overridden::OverrideError;
+pub use robot::SimulatedRobot;
+pub use score::{Score, Truth};
+pub use series::{Accuracy, Errors, Measurements, Tally, corners, drawn_starts};
+pub use setup::{SetupError, mission};
+pub use summary::{CellCounts, Summary};
+pub use trace::{TRACE_VERSION, TraceHeader};

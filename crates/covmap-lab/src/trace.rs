@@ -1,0 +1,79 @@
+//! The first line of a trace.
+
+use crate::{Config, SetupError};
+use covmap::{Grid, Raster};
+use covmap_explore::{Limits, Mission};
+use covmap_world::SonarPhysics;
+use nalgebra::Isometry2;
+use serde::{Deserialize, Serialize};
+
+/// The version of the trace's format.
+pub const TRACE_VERSION: u32 = 4;
+
+/// The first line of a trace: all that is needed to repeat the run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TraceHeader {
+    /// [`TRACE_VERSION`].
+    pub covmap_trace: u32,
+    /// The name of the world.
+    pub world: String,
+    /// The seed of the noise.
+    pub seed: u64,
+    /// All parameters, the strategy among them.
+    pub config: Config,
+    /// The map's grid.
+    pub grid: Grid,
+    /// The row-major indices of the first cell and past the last of every run of cells in
+    /// the extent: the others are outside.
+    pub inside: Vec<(usize, usize)>,
+    /// Where the robot started, `world_from_robot`.
+    pub start: Isometry2<f64>,
+    /// How it measured, and its budget.
+    pub limits: Limits,
+}
+
+impl TraceHeader {
+    /// The header of a mission in the world called `world`, with the physics of its sensors.
+    pub fn new(mission: &Mission, sonar: &SonarPhysics, world: &str, seed: u64) -> Self {
+        let outside = mission.outside.values();
+        let mut inside: Vec<(usize, usize)> = Vec::new();
+        for index in (0..outside.len()).filter(|i| !outside[*i]) {
+            match inside.last_mut() {
+                Some((_, end)) if *end == index => *end += 1,
+                _ => inside.push((index, index + 1)),
+            }
+        }
+        Self {
+            covmap_trace: TRACE_VERSION,
+            world: world.to_owned(),
+            seed,
+            config: Config::of(mission.config.clone(), *sonar),
+            grid: mission.grid,
+            inside,
+            start: mission.start,
+            limits: mission.limits,
+        }
+    }
+
+    /// The mission that the header describes. Anybody may have written it.
+    ///
+    /// # Errors
+    /// If [`Mission::validate`] finds something, or what is inside is no list of runs of cells in
+    /// order.
+    pub fn mission(&self) -> Result<Mission, SetupError> {
+        let mut outside = Raster::filled(self.grid, true);
+        let (mut end, cells) = (0, self.grid.len());
+        for (number, &(first, next)) in self.inside.iter().enumerate() {
+            if first < end || next <= first || next > cells {
+                return Err(SetupError::Inside { number, first, next, end, cells });
+            }
+            outside.values_mut()[first..next].fill(false);
+            end = next;
+        }
+        let Self { grid, start, limits, .. } = *self;
+        let mission = Mission { config: self.config.parameters(), grid, outside, start, limits };
+        mission.validate()?;
+        Ok(mission)
+    }
+}
