@@ -1,11 +1,13 @@
 //! Every shipped configuration and scenario is loaded and run.
 
 use crate::files;
+use covmap::{CoverageMap, Grid, ReadOut};
 use covmap_explore::{Ending, Limits, explore};
 use covmap_io::{read_ron, write_ron};
 use covmap_lab::{CellCounts, Config, SimulatedRobot, Truth};
 use covmap_plan::Planner;
 use covmap_world::{Scenario, World};
+use nalgebra::Point2;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -47,6 +49,20 @@ fn every_configuration_makes_a_model_and_a_planner() {
 #[test]
 fn the_default_configuration_is_the_default_of_the_code() {
     assert_eq!(default_config(), Config::b21r());
+}
+
+#[test]
+fn every_read_out_reads_maps_of_the_default() {
+    let bins = default_config().model.bins;
+    let read_outs = files("configs/read-out", "ron");
+    assert!(!read_outs.is_empty());
+    for path in read_outs {
+        let read_out: ReadOut = read_ron(&path).unwrap_or_else(|error| panic!("{error}"));
+        let grid = Grid::new(Point2::origin(), 0.1, 2, 2).unwrap();
+        let map = CoverageMap::new(grid, bins).unwrap();
+        let read = map.read_by(&read_out).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+        assert_eq!(read.bins(), bins, "{}", path.display());
+    }
 }
 
 #[test]

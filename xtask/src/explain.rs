@@ -15,7 +15,7 @@ pub(crate) fn run(arguments: &Explain) -> Result<ExitCode> {
     let path = trace_file::in_folder(dir)?;
     let step = &step.unwrap_or(0);
     if let Some(cell) = cell {
-        let grid = Trace::read(&path, 0)?.header.grid;
+        let grid = trace_file::read_header(&path)?.grid;
         say::line(certificate_file::why(&dir.join("certificate.csv"), &grid, *cell)?);
         return Ok(ExitCode::SUCCESS);
     }

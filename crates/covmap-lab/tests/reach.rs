@@ -109,6 +109,16 @@ fn a_door_that_is_wide_enough_is_a_door_at_any_angle() {
     }
 }
 
+#[test]
+fn a_robot_amid_open_space_goes_on_until_it_found_the_walls() {
+    // Farther than the usable range to all sides.
+    let world = world((9.0, 9.0), Vec::new());
+    let (run, score, cut_off) =
+        run(&world, &config(Strategy::IgCl { alpha: 0.1 }), at(4.5, 4.5), 1, Limits::default());
+    assert_eq!(run.ending, Ending::Explored);
+    assert!(score.completeness >= 0.99, "{score:?} {cut_off:?}");
+}
+
 /// A simulated robot of which something breaks.
 struct Broken<'a> {
     robot: SimulatedRobot<'a>,

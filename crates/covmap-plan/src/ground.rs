@@ -16,8 +16,13 @@ use covmap_gain::ViewPoints;
 /// with 11 bins.)
 const MAY_BE_FREE: f64 = 0.2;
 
-/// What the entropy of a cell that keeps the robot off must be expected to fall by \[nats\].
+/// What the entropy of a cell that keeps the robot off must be expected to fall by \[nats\], if something
+/// is known of it …
 const DOUBT: f64 = 0.1;
+
+/// … which is so with less entropy than this share of the largest: of other cells anything is worth
+/// knowing.
+const BLANK: f64 = 0.9;
 
 impl Planner {
     /// For each cell that keeps the robot in the cell `from` off more ground the candidate that is
@@ -37,10 +42,11 @@ impl Planner {
         candidates.indices.retain(|index| self.gains.sees(*index, is_wanted));
         let wanted = ViewPoints::of(&self.grid, candidates.indices.iter().copied());
         let largest = self.gains.largest_changes(&wanted);
-        let of_cell = largest.into_iter().zip(&keeps_off).filter(|(_, keeps_off)| **keeps_off);
-        let enough =
-            of_cell.filter_map(|(largest, _)| largest.filter(|(change, _)| *change >= DOUBT));
-        candidates.indices = enough.map(|(_, from)| from).collect();
+        let enough = |index: usize| if self.is_blank(index) { least } else { DOUBT };
+        let kept_off = (0..keeps_off.len()).filter(|index| keeps_off[*index]);
+        let promising = kept_off
+            .filter_map(|index| largest[index].filter(|(change, _)| *change >= enough(index)));
+        candidates.indices = promising.map(|(_, from)| from).collect();
         candidates.indices.sort_unstable();
         candidates.indices.dedup();
         let least = LeastChange { cell: least, scan: least };
@@ -65,6 +71,13 @@ impl Planner {
             }
         }
         keeps_off.contains(&true).then_some(keeps_off)
+    }
+
+    /// Whether next to nothing is known of a cell.
+    fn is_blank(&self, index: usize) -> bool {
+        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
+        let largest = libm::log(self.model.parameters().bins as f64);
+        f64::from(self.gains.entropy(index)) >= BLANK * largest
     }
 
     /// Whether a cell may be one that the robot can drive over.
