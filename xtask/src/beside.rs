@@ -146,7 +146,8 @@ fn figure(rows: &[Row]) -> Figure {
         let of_x = |label: &str, x: &dyn Fn(&Row) -> f64| Chart {
             title: title.into(),
             subtitle: String::new(),
-            x: ChartAxis::new(label),
+            // Strategies differ by factors.
+            x: ChartAxis { logarithmic: true, ..ChartAxis::new(label) },
             y: ChartAxis::new(y),
             series: series(rows, |row| Some((x(row), of(row)?))),
         };
