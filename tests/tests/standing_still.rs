@@ -2,7 +2,7 @@
 
 use crate::root;
 use covmap::CoverageMap;
-use covmap_explore::{Limits, Robot};
+use covmap_explore::Limits;
 use covmap_fit::{ExampleScore, Weighting};
 use covmap_io::read_ron;
 use covmap_lab::{Config, SimulatedRobot, Truth};
@@ -29,7 +29,7 @@ fn score(scenario: &str, seed: u64, share: f64, scans: [usize; 2]) -> [f64; 2] {
     let mut taken = 0;
     scans.map(|scans| {
         while taken < scans {
-            let scan = Scan { pose: mission.start, time: 0.0, ranges: robot.sense(&mission.start) };
+            let scan = Scan { pose: mission.start, time: 0.0, ranges: robot.fire(&mission.start) };
             looks.integrate(&model, &mut map, &scan);
             taken += 1;
         }

@@ -156,7 +156,7 @@ fn exit_code(ending: Ending) -> u8 {
     match ending {
         Ending::Explored => 0,
         Ending::BudgetSpent => 3,
-        Ending::StartBlocked | Ending::BoxedIn | Ending::NothingHeard => 4,
+        Ending::StartBlocked | Ending::BoxedIn | Ending::NothingHeard | Ending::RobotFailed => 4,
         Ending::Interrupted => interrupt::EXIT_CODE,
     }
 }
@@ -170,6 +170,7 @@ pub(crate) fn in_words(ending: Ending) -> &'static str {
         Ending::BoxedIn => "nothing is open, but the robot is boxed in where it stands",
         Ending::NothingHeard => "nothing is open, but no sensor ever answered",
         Ending::Interrupted => "interrupted",
+        Ending::RobotFailed => "the robot failed, and something may still be open",
     }
 }
 

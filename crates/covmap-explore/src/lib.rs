@@ -11,13 +11,15 @@
 //! Metres, radians, nats, seconds.
 
 mod event;
+mod explorer;
 mod mission;
 mod parameters;
 mod robot;
 mod run;
 
 pub use event::{Event, TraceHasher};
+pub use explorer::{Explorer, ScanError};
 pub use mission::{Limits, Mission, MissionError, standing_place};
 pub use parameters::{ParameterError, Parameters, RobotParameters};
-pub use robot::{RecordedRobot, Robot};
+pub use robot::{RecordedRobot, Robot, Sensed};
 pub use run::{Ending, Run, View, explore};

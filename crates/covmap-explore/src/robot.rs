@@ -4,13 +4,40 @@ use crate::Event;
 use covmap_sonar::{Drive, Range};
 use nalgebra::{Isometry2, Point2};
 use std::collections::VecDeque;
+use std::convert::Infallible;
 
-/// A body that senses and drives.
+/// What a robot measured, and where.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sensed {
+    /// Where it took itself to be, `world_from_robot`.
+    pub pose: Isometry2<f64>,
+    /// One reading for each beam of the ring.
+    pub ranges: Vec<Range>,
+}
+
+/// A body that senses and drives. A real one may fail, be stopped on its way, drift, and turn its ring:
+///
+/// - what [`sense`](Self::sense) measured is integrated at the pose that it returns. Where this is not the
+///   expected place, the loop goes on from there;
+/// - the belief is right for any heading of the pose. What scans are expected to gain is computed for a ring
+///   that keeps the heading of the start;
+/// - an error ends the run with [`Ending::RobotFailed`](crate::Ending::RobotFailed), and the map up to there
+///   is kept.
 pub trait Robot {
-    /// What the ring measures at a pose.
-    fn sense(&mut self, pose: &Isometry2<f64>) -> Vec<Range>;
-    /// Drives straight from one point to another, or bumps into something.
-    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Drive;
+    /// Why it can neither sense nor drive any longer.
+    type Error: std::error::Error;
+
+    /// What the ring measures, at a pose if all went as expected.
+    ///
+    /// # Errors
+    /// If the robot fails.
+    fn sense(&mut self, expected: &Isometry2<f64>) -> Result<Sensed, Self::Error>;
+
+    /// Drives straight from one point, where the robot is, to another \[m\].
+    ///
+    /// # Errors
+    /// If the robot fails. A bump is no failure.
+    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Result<Drive, Self::Error>;
 }
 
 /// The record of a run: it senses and bumps as its trace says. Exploring with it repeats
@@ -30,22 +57,26 @@ impl RecordedRobot {
 }
 
 impl Robot for RecordedRobot {
-    /// The next recorded scan's readings; nothing once the record has ended.
-    fn sense(&mut self, _: &Isometry2<f64>) -> Vec<Range> {
-        match self.events.pop_front() {
-            Some(Event::Scan { scan, .. }) if scan.ranges.len() == self.beams => scan.ranges,
-            _ => vec![Range::Missing; self.beams],
-        }
+    type Error = Infallible;
+
+    /// The next recorded scan; nothing once the record has ended.
+    fn sense(&mut self, expected: &Isometry2<f64>) -> Result<Sensed, Infallible> {
+        Ok(match self.events.pop_front() {
+            Some(Event::Scan { scan, .. }) if scan.ranges.len() == self.beams => {
+                Sensed { pose: scan.pose, ranges: scan.ranges }
+            }
+            _ => Sensed { pose: *expected, ranges: vec![Range::Missing; self.beams] },
+        })
     }
 
-    fn drive(&mut self, _: Point2<f64>, to: Point2<f64>) -> Drive {
-        match self.events.front() {
+    fn drive(&mut self, _: Point2<f64>, to: Point2<f64>) -> Result<Drive, Infallible> {
+        Ok(match self.events.front() {
             Some(Event::Bump { at, towards, .. }) if *towards == to => {
                 let at = *at;
                 self.events.pop_front();
                 Drive::Bumped { at }
             }
             _ => Drive::Arrived,
-        }
+        })
     }
 }

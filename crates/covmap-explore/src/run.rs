@@ -1,12 +1,13 @@
 //! The loop.
 
-use crate::{Event, Mission, MissionError, Robot, standing_place};
-use covmap::{Cell, Change, CoverageMap, Raster};
-use covmap_model::{Body, BodyEvent, Looks, SensorModel};
-use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Promise, Reach, turns};
+use crate::{Event, Explorer, Mission, MissionError, Robot, Sensed, standing_place};
+use covmap::{Cell, CoverageMap, Raster};
+use covmap_model::BodyEvent;
+use covmap_plan::{CellStatus, Decision, Planner, Promise, Reach, turns};
 use covmap_sonar::{Drive, Range, Scan};
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
+use std::error::Error;
 use std::ops::ControlFlow;
 
 /// How a run ended.
@@ -23,8 +24,10 @@ pub enum Ending {
     BoxedIn,
     /// Nothing is open, but no sensor answered in the whole run: there was not one echo.
     NothingHeard,
-    /// Whoever watched the run stopped it.
+    /// The hook stopped the run.
     Interrupted,
+    /// The robot failed, and something may still be open: [`Run::failure`] says why.
+    RobotFailed,
 }
 
 /// What a run came to.
@@ -32,6 +35,8 @@ pub enum Ending {
 pub struct Run {
     /// How it ended.
     pub ending: Ending,
+    /// Why the robot failed, if it did.
+    pub failure: Option<String>,
     /// The belief.
     pub map: CoverageMap,
     /// What became of every cell.
@@ -92,41 +97,57 @@ pub struct View<'a> {
     pub trajectory: &'a [Point2<f64>],
 }
 
-/// Explores until nothing is open, the budget is spent, or the hook says stop.
+/// Explores until nothing is open, the budget is spent, the hook says stop, or the robot fails.
 ///
 /// The hook sees every event when it happens: a scan after it is integrated, a decision
 /// before it is carried out. The run is a function of the mission and of what the robot
 /// senses.
 ///
 /// # Errors
-/// If the mission's configuration is invalid, or [`Mission::validate`] finds something.
+/// If the mission's parameters are invalid, or [`Mission::validate`] finds something.
 pub fn explore<R: Robot>(
     mission: &Mission,
     robot: &mut R,
     hook: &mut impl FnMut(&Event, &View<'_>) -> ControlFlow<()>,
 ) -> Result<Run, MissionError> {
-    let mut explorer = Explorer::new(mission, robot, hook)?;
-    let ending = match explorer.run() {
-        ControlFlow::Continue(ending) => ending,
-        ControlFlow::Break(()) => Ending::Interrupted,
+    let mut circle = Circle::new(mission, robot, hook)?;
+    let (ending, failure) = match circle.run() {
+        ControlFlow::Continue(ending) => (ending, None),
+        ControlFlow::Break(Stop::ByHook) => (Ending::Interrupted, None),
+        ControlFlow::Break(Stop::Failed(reason)) => (Ending::RobotFailed, Some(reason)),
     };
-    let _ = explorer.report(Event::End { ending });
-    Ok(explorer.finish(ending))
+    let _ = circle.report(Event::End { ending });
+    Ok(circle.finish(ending, failure))
 }
 
-struct Explorer<'a, R, H> {
+/// Why a run does not go on.
+enum Stop {
+    /// The hook said so.
+    ByHook,
+    /// The robot failed, and how.
+    Failed(String),
+}
+
+/// What goes on until there is a reason to stop.
+type Flow<T = ()> = ControlFlow<Stop, T>;
+
+/// What a robot did, or why it failed.
+fn done<T, E: Error>(result: Result<T, E>) -> Flow<T> {
+    match result {
+        Ok(value) => ControlFlow::Continue(value),
+        Err(error) => ControlFlow::Break(Stop::Failed(error.to_string())),
+    }
+}
+
+/// Sense, integrate, choose, drive.
+struct Circle<'a, R, H> {
     mission: &'a Mission,
     robot: &'a mut R,
     hook: &'a mut H,
-    model: SensorModel,
-    looks: Looks,
-    map: CoverageMap,
-    body: Body,
-    planner: Planner,
-    at: Point2<f64>,
-    cell: Cell,
+    explorer: Explorer,
     left_start: bool,
-    /// The robot stands where a step ends: not yet, at a start that is off its cell's centre.
+    /// The robot stands where a step ends: not yet, at a start that is off its cell's centre, nor where it
+    /// was stopped or drifted to.
     settled: bool,
     /// The robot does not get to the centre of the cell that it started in: the start itself
     /// stands for it.
@@ -134,7 +155,6 @@ struct Explorer<'a, R, H> {
     /// How far the robot drove since it last measured [m].
     since_scan: f64,
     scans: Vec<Scan>,
-    happened: Vec<(usize, BodyEvent)>,
     trajectory: Vec<Point2<f64>>,
     path_length: f64,
     decisions: usize,
@@ -142,42 +162,20 @@ struct Explorer<'a, R, H> {
     negative_gains: usize,
 }
 
-impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, R, H> {
+impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R, H> {
     fn new(mission: &'a Mission, robot: &'a mut R, hook: &'a mut H) -> Result<Self, MissionError> {
-        mission.validate()?;
-        let Mission { config, grid, outside, start, .. } = mission;
-        let (_, model) = config.build()?;
-        let planner = Planner::new(
-            &config.planner,
-            &model,
-            outside,
-            config.robot.radius,
-            start.rotation.angle(),
-        )
-        .map_err(crate::ParameterError::from)?;
-        let map = CoverageMap::new(*grid, config.model.bins)
-            .map_err(|_| covmap_model::ModelError::Bins(config.model.bins))
-            .map_err(crate::ParameterError::from)?;
-        let at = Point2::from(start.translation.vector);
-        let cell = grid.cell_at(at).ok_or(MissionError::StartOutside(at.x, at.y))?;
+        let explorer = Explorer::new(mission)?;
         Ok(Self {
+            trajectory: vec![explorer.at()],
             mission,
             robot,
             hook,
-            looks: Looks::new(&model),
-            model,
-            map,
-            body: Body::new(*grid, config.robot.radius),
-            planner,
-            at,
-            cell,
+            explorer,
             left_start: false,
             settled: false,
             cramped: false,
             since_scan: 0.0,
             scans: Vec::new(),
-            happened: Vec::new(),
-            trajectory: vec![at],
             path_length: 0.0,
             decisions: 0,
             bumped_at: Vec::new(),
@@ -185,11 +183,9 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         })
     }
 
-    fn run(&mut self) -> ControlFlow<(), Ending> {
-        self.body_was_between(self.at, self.at);
-        self.planner.stand_on(self.cell);
+    fn run(&mut self) -> Flow<Ending> {
         self.scan()?;
-        while let Some(decision) = self.planner.choose(&self.map, self.cell) {
+        while let Some(decision) = self.explorer.decide() {
             if self.is_budget_spent() {
                 return ControlFlow::Continue(Ending::BudgetSpent);
             }
@@ -207,7 +203,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         let answers = |scan: &Scan| scan.ranges.iter().any(|r| matches!(r, Range::Echo(_)));
         if !self.scans.iter().any(answers) {
             Ending::NothingHeard
-        } else if !self.planner.is_confined(self.cell) {
+        } else if !self.explorer.is_confined() {
             Ending::Explored
         } else if self.left_start {
             Ending::BoxedIn
@@ -225,31 +221,50 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
         standing_place(grid, start.translation.vector.into(), self.cramped, cell)
     }
 
-    fn decide(&mut self, decision: Decision) -> ControlFlow<()> {
+    fn decide(&mut self, decision: Decision) -> Flow {
         self.negative_gains += decision.negative_gains;
-        let event = Event::Decision { number: self.decisions, from: self.cell, decision };
+        let from = self.explorer.cell();
+        let event = Event::Decision { number: self.decisions, from, decision };
         self.decisions += 1;
         self.report(event)
     }
 
-    fn scan(&mut self) -> ControlFlow<()> {
-        let pose = Isometry2::new(self.at.coords, self.mission.start.rotation.angle());
+    fn scan(&mut self) -> Flow {
+        let heading = self.mission.start.rotation.angle();
+        let expected = Isometry2::new(self.explorer.at().coords, heading);
+        let Sensed { pose, ranges } = done(self.robot.sense(&expected))?;
+        if pose.translation != expected.translation {
+            self.drifted(pose.translation.vector.into())?;
+        }
         let time = self.path_length / self.mission.config.robot.speed;
-        let scan = Scan { pose, time, ranges: self.robot.sense(&pose) };
-        let changes = self.looks.integrate(&self.model, &mut self.map, &scan);
-        let changes = self.body.hold(&mut self.map, changes);
-        self.planner.observe(&self.map, &scan, &changes);
+        let scan = Scan { pose, time, ranges };
+        done(self.explorer.see(&scan))?;
         self.since_scan = 0.0;
         self.scans.push(scan.clone());
         self.report(Event::Scan { number: self.scans.len() - 1, scan })
     }
 
-    /// Drives from where it is over some cells; `false` if it bumped into something.
-    fn drive(&mut self, path: &[Cell]) -> ControlFlow<(), bool> {
+    /// The robot is elsewhere than expected.
+    fn drifted(&mut self, to: Point2<f64>) -> Flow {
+        let Some(cell) = self.explorer.grid().cell_at(to) else {
+            let reason = format!("the robot is outside of the map, at ({}, {})", to.x, to.y);
+            return ControlFlow::Break(Stop::Failed(reason));
+        };
+        self.advance(to);
+        if cell != self.explorer.cell() {
+            self.explorer.found_itself(cell);
+        }
+        self.settled = false;
+        ControlFlow::Continue(())
+    }
+
+    /// Drives from where it is over some cells; `false` if it did not get to the last one.
+    fn drive(&mut self, path: &[Cell]) -> Flow<bool> {
         if !self.settled {
             self.settled = true;
-            self.cramped = !self.drive_straight(self.cell)?;
-            if self.cramped {
+            let arrives = self.drive_straight(self.explorer.cell())?;
+            if !arrives {
+                self.cramped |= !self.left_start;
                 return ControlFlow::Continue(false);
             }
         }
@@ -258,36 +273,38 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
                 return ControlFlow::Continue(false);
             }
             self.left_start = true;
-            self.planner.drove(self.cell, *cell);
-            self.cell = *cell;
+            self.explorer.arrived(*cell);
         }
         ControlFlow::Continue(true)
     }
 
-    /// Drives to its place in a cell, measuring on the way if that is wanted. After a bump the
-    /// robot backs to where it came from.
-    fn drive_straight(&mut self, cell: Cell) -> ControlFlow<(), bool> {
-        let (home, place) = (self.at, self.place(cell));
+    /// Drives to its place in a cell, measuring on the way if that is wanted; `false` if it did not get
+    /// there. After a bump the robot backs to where it came from.
+    fn drive_straight(&mut self, cell: Cell) -> Flow<bool> {
+        let (home, place) = (self.explorer.at(), self.place(cell));
         loop {
-            let left = (place - self.at).norm();
+            let at = self.explorer.at();
+            let left = (place - at).norm();
             let step = self
                 .mission
                 .limits
                 .while_driving
                 .map_or(f64::INFINITY, |every| every - self.since_scan);
             let measures = step < left;
-            let goal =
-                if measures { self.at + (place - self.at) * (step.max(0.0) / left) } else { place };
-            match self.robot.drive(self.at, goal) {
+            let goal = if measures { at + (place - at) * (step.max(0.0) / left) } else { place };
+            match done(self.robot.drive(at, goal))? {
                 Drive::Arrived => self.advance(goal),
                 Drive::Bumped { at } => {
                     self.advance(at);
                     self.bumped_at.push(at);
-                    self.planner.bump(self.cell, cell, at);
-                    self.body_touched(at, goal);
+                    self.explorer.bumped(cell, goal);
                     let event = Event::Bump { cell, at, towards: goal };
                     self.advance(home);
                     self.report(event)?;
+                    return ControlFlow::Continue(false);
+                }
+                Drive::Stopped { at } => {
+                    self.drifted(at)?;
                     return ControlFlow::Continue(false);
                 }
             }
@@ -302,66 +319,50 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Explorer<'a, 
     }
 
     fn advance(&mut self, to: Point2<f64>) {
-        let length = (to - self.at).norm();
+        let length = (to - self.explorer.at()).norm();
         if length > 0.0 {
             self.path_length += length;
             self.since_scan += length;
-            self.body_was_between(self.at, to);
+            self.explorer.moved(to);
             self.trajectory.push(to);
-            self.at = to;
         }
     }
 
-    fn body_was_between(&mut self, from: Point2<f64>, to: Point2<f64>) {
-        let changes = self.believe_the_body(BodyEvent::Moved { from, to });
-        self.planner.body_moved(&self.map, from, to, &changes.unwrap_or_default());
-    }
-
-    /// The body stopped at something on its way to a goal.
-    fn body_touched(&mut self, at: Point2<f64>, goal: Point2<f64>) {
-        if let Some(changes) =
-            self.believe_the_body(BodyEvent::Touched { at, direction: goal - at })
-        {
-            self.planner.body_moved(&self.map, at, at, &changes);
-        }
-    }
-
-    /// What changed in the map by what happened to the body; `None` if that is no evidence.
-    fn believe_the_body(&mut self, event: BodyEvent) -> Option<Vec<Change>> {
-        let believes = self.mission.config.planner.body_evidence == BodyEvidence::Belief;
-        believes.then(|| {
-            self.happened.push((self.scans.len(), event));
-            self.body.happened(&mut self.map, &event)
-        })
-    }
-
-    fn report(&mut self, event: Event) -> ControlFlow<()> {
+    fn report(&mut self, event: Event) -> Flow {
         let view = View {
-            map: &self.map,
-            planner: &self.planner,
+            map: self.explorer.map(),
+            planner: self.explorer.planner(),
             scans: self.scans.len(),
             path_length: self.path_length,
             trajectory: &self.trajectory,
         };
-        (self.hook)(&event, &view)
+        match (self.hook)(&event, &view) {
+            ControlFlow::Continue(()) => ControlFlow::Continue(()),
+            ControlFlow::Break(()) => ControlFlow::Break(Stop::ByHook),
+        }
     }
 
-    fn finish(mut self, ending: Ending) -> Run {
+    fn finish(mut self, ending: Ending, failure: Option<String>) -> Run {
+        let (certificate, promises) = (self.explorer.certificate(), self.explorer.promises());
+        let (reach, planner) = (self.explorer.reach(), self.explorer.planner());
+        let (counts, capped_cells) = (planner.counted_scans(), planner.capped_cells());
+        let (map, body) = self.explorer.into_belief();
         Run {
             ending,
-            certificate: self.planner.certificate(&self.map, self.cell),
-            promises: self.planner.promises_of(self.cell),
-            reach: self.planner.reach(self.cell),
-            counts: self.planner.counted_scans(),
-            map: self.map,
+            failure,
+            map,
+            certificate,
+            promises,
+            reach,
             scans: self.scans,
-            body: self.happened,
+            body,
             trajectory: self.trajectory,
             path_length: self.path_length,
             decisions: self.decisions,
             bumped_at: self.bumped_at,
             negative_gains: self.negative_gains,
-            capped_cells: self.planner.capped_cells(),
+            counts,
+            capped_cells,
         }
     }
 }

@@ -1,11 +1,12 @@
 //! A robot in a simulated world.
 
 use crate::{Config, ConfigError};
-use covmap_explore::Robot;
+use covmap_explore::{Robot, Sensed};
 use covmap_sonar::{Drive, Range, SonarRing};
 use covmap_statistics::stream;
 use covmap_world::{SonarPhysics, World};
 use nalgebra::{Isometry2, Point2};
+use std::convert::Infallible;
 
 /// A robot in a simulated world.
 #[derive(Debug)]
@@ -29,14 +30,23 @@ impl<'a> SimulatedRobot<'a> {
     }
 }
 
-impl Robot for SimulatedRobot<'_> {
-    fn sense(&mut self, pose: &Isometry2<f64>) -> Vec<Range> {
+impl SimulatedRobot<'_> {
+    /// What the ring measures at a pose.
+    pub fn fire(&mut self, pose: &Isometry2<f64>) -> Vec<Range> {
         let mut noise = stream(self.seed, "fire", self.scans);
         self.scans += 1;
         self.world.fire(&self.ring, pose, &self.physics, &mut noise)
     }
+}
 
-    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Drive {
-        self.world.drive(from, to, self.radius)
+impl Robot for SimulatedRobot<'_> {
+    type Error = Infallible;
+
+    fn sense(&mut self, expected: &Isometry2<f64>) -> Result<Sensed, Infallible> {
+        Ok(Sensed { pose: *expected, ranges: self.fire(expected) })
+    }
+
+    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Result<Drive, Infallible> {
+        Ok(self.world.drive(from, to, self.radius))
     }
 }

@@ -2,7 +2,7 @@
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use covmap::{Cell, CoverageMap};
-use covmap_explore::{Ending, Limits, Robot, Run, explore};
+use covmap_explore::{Ending, Limits, Run, explore};
 use covmap_lab::{Config, SimulatedRobot};
 use covmap_model::{Body, Looks, SensorModel};
 use covmap_plan::{CellStatus, Promise};
@@ -74,7 +74,7 @@ fn looked_again(building: &str, resolution: f64, seed: u64, most: usize) -> (usi
         looked += 1;
         let at = mission.grid.center(promise.from);
         let pose = Isometry2::new(at.coords, mission.start.rotation.angle());
-        let scan = Scan { pose, time: 0.0, ranges: robot.sense(&pose) };
+        let scan = Scan { pose, time: 0.0, ranges: robot.fire(&pose) };
         believer.entropy_after(&scan, *cell) <= config.planner.entropy_threshold
     };
     let resolved = promised.iter().step_by(step).filter(resolves).count();

@@ -1,13 +1,13 @@
 //! The robot is never shut in by its own rules; and where it is shut in, the run says so.
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
-use covmap_explore::{Ending, Limits, Mission, Robot, Run, explore};
+use covmap_explore::{Ending, Limits, Mission, Robot, Run, Sensed, explore};
 use covmap_lab::{Config, CutOff, Score, SimulatedRobot, Truth};
 use covmap_plan::{CellStatus, Strategy};
-use covmap_sonar::Drive;
-use covmap_sonar::Range;
+use covmap_sonar::{Drive, Range};
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use nalgebra::{Isometry2, Point2};
+use std::convert::Infallible;
 use std::ops::ControlFlow;
 
 fn config(strategy: Strategy) -> Config {
@@ -129,14 +129,17 @@ struct Broken<'a> {
 }
 
 impl Robot for Broken<'_> {
-    fn sense(&mut self, pose: &Isometry2<f64>) -> Vec<Range> {
-        let ranges = self.robot.sense(pose);
-        self.says.map_or(ranges.clone(), |says| vec![says; ranges.len()])
+    type Error = Infallible;
+
+    fn sense(&mut self, expected: &Isometry2<f64>) -> Result<Sensed, Infallible> {
+        let Sensed { pose, ranges } = self.robot.sense(expected)?;
+        let ranges = self.says.map_or(ranges.clone(), |says| vec![says; ranges.len()]);
+        Ok(Sensed { pose, ranges })
     }
 
-    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Drive {
+    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Result<Drive, Infallible> {
         if self.drives == 0 {
-            return Drive::Bumped { at: from };
+            return Ok(Drive::Bumped { at: from });
         }
         self.drives -= 1;
         self.robot.drive(from, to)
@@ -202,12 +205,14 @@ fn a_run_that_was_stopped_tells_not_seen_from_unreachable() {
 struct Haunted<'a>(SimulatedRobot<'a>);
 
 impl Robot for Haunted<'_> {
-    fn sense(&mut self, pose: &Isometry2<f64>) -> Vec<Range> {
-        self.0.sense(pose)
+    type Error = Infallible;
+
+    fn sense(&mut self, expected: &Isometry2<f64>) -> Result<Sensed, Infallible> {
+        self.0.sense(expected)
     }
 
-    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Drive {
-        if to.x > 2.8 { Drive::Bumped { at: from } } else { self.0.drive(from, to) }
+    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Result<Drive, Infallible> {
+        if to.x > 2.8 { Ok(Drive::Bumped { at: from }) } else { self.0.drive(from, to) }
     }
 }
 

@@ -12,4 +12,10 @@ pub enum Drive {
         /// The last place without contact, a micrometre before it \[m\].
         at: Point2<f64>,
     },
+    /// On the way, touching nothing: somebody or something stopped the robot there. No simulated robot
+    /// does.
+    Stopped {
+        /// Where it stands \[m\].
+        at: Point2<f64>,
+    },
 }

@@ -82,7 +82,7 @@ impl<'a> Situation<'a> {
         let mut seconds = 0.0;
         for cell in &decision.path {
             let (from, to) = (self.grid.center(self.at), self.grid.center(*cell));
-            if let Drive::Bumped { at } = self.robot.drive(from, to) {
+            if let Ok(Drive::Bumped { at }) = self.robot.drive(from, to) {
                 self.planner.bump(self.at, *cell, at);
                 break;
             }
@@ -116,7 +116,7 @@ impl<'a> Situation<'a> {
 
     fn scan(&mut self) -> f64 {
         let pose = Isometry2::new(self.grid.center(self.at).coords, self.heading);
-        let scan = Scan { pose, time: 0.0, ranges: self.robot.sense(&pose) };
+        let scan = Scan { pose, time: 0.0, ranges: self.robot.fire(&pose) };
         self.take_over(&scan)
     }
 

@@ -2,7 +2,6 @@
 
 use anyhow::Result;
 use covmap::{Cell, CoverageMap, Grid};
-use covmap_explore::Robot;
 use covmap_io::parse_ron;
 use covmap_lab::{Config, SimulatedRobot};
 use covmap_model::{OccupancyGrid, OccupancyParameters, integrate};
@@ -75,7 +74,7 @@ fn series(world: &World, config: &Config, seed: u64) -> Result<Series> {
     let pose = world.given_start().unwrap_or_default();
     let mut series = Series::default();
     for measurement in 1..=MEASUREMENTS {
-        let scan = Scan { pose, time: 0.0, ranges: robot.sense(&pose) };
+        let scan = Scan { pose, time: 0.0, ranges: robot.fire(&pose) };
         integrate(&model, &mut map, &scan);
         occupancy.integrate(&model, &scan);
         let occupied = occupancy.probabilities().get(cell).copied().flatten();

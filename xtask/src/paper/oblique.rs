@@ -3,7 +3,6 @@
 use super::runs::Units;
 use anyhow::Result;
 use covmap::{Class, CoverageMap};
-use covmap_explore::Robot;
 use covmap_lab::{Config, SimulatedRobot};
 use covmap_model::{OccupancyGrid, OccupancyParameters, integrate};
 use covmap_sonar::Scan;
@@ -68,7 +67,7 @@ fn unit(config: &Config, turn: f64, away: f64, seed: u64) -> Result<Vec<f64>> {
         let turned = Isometry2::new(nalgebra::Vector2::new(4.0, 4.0), turn);
         let at = turned * Point2::new(along, -0.2 - away);
         let pose = Isometry2::new(at.coords, 0.0);
-        let scan = Scan { pose, time: 0.0, ranges: robot.sense(&pose) };
+        let scan = Scan { pose, time: 0.0, ranges: robot.fire(&pose) };
         integrate(&model, &mut map, &scan);
         occupancy.integrate(&model, &scan);
         places.push(at);

@@ -2,11 +2,11 @@
 
 use super::{all_close, close, mission};
 use covmap::Cell;
-use covmap_explore::{Ending, Event, Limits, Mission, Robot, Run, explore};
+use covmap_explore::{Ending, Event, Limits, Mission, Robot, Run, Sensed, explore};
 use covmap_plan::{BodyEvidence, CellStatus, Reach, Strategy};
-use covmap_sonar::Drive;
-use covmap_sonar::Range;
+use covmap_sonar::{Drive, Range};
 use nalgebra::{Isometry2, Point2};
+use std::convert::Infallible;
 use std::ops::ControlFlow;
 
 /// Its sensors always read the same, and it bumps into a wall at `wall` [m] with its front, .3 m
@@ -17,14 +17,105 @@ struct Told {
 }
 
 impl Robot for Told {
-    fn sense(&mut self, _: &Isometry2<f64>) -> Vec<Range> {
-        self.readings.to_vec()
+    type Error = Infallible;
+
+    fn sense(&mut self, expected: &Isometry2<f64>) -> Result<Sensed, Infallible> {
+        Ok(Sensed { pose: *expected, ranges: self.readings.to_vec() })
     }
 
-    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Drive {
+    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Result<Drive, Infallible> {
         let stop = self.wall - 0.3;
-        if to.x <= stop { Drive::Arrived } else { Drive::Bumped { at: Point2::new(stop, from.y) } }
+        let at = Point2::new(stop, from.y);
+        Ok(if to.x <= stop { Drive::Arrived } else { Drive::Bumped { at } })
     }
+}
+
+/// What goes otherwise than expected, once.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Mishap {
+    /// The battery is empty at the third scan.
+    Fails,
+    /// Somebody stops the robot half way on its second drive.
+    IsStopped,
+    /// At its second scan it finds itself a cell farther to the right.
+    Drifts,
+    /// ... or far away.
+    IsLost,
+}
+
+/// A robot to which that happens.
+struct Unlucky {
+    told: Told,
+    mishap: Mishap,
+    scans: usize,
+    drives: usize,
+}
+
+#[derive(Debug, thiserror::Error)]
+#[error("the battery is empty")]
+struct EmptyBattery;
+
+impl Robot for Unlucky {
+    type Error = EmptyBattery;
+
+    fn sense(&mut self, expected: &Isometry2<f64>) -> Result<Sensed, EmptyBattery> {
+        self.scans += 1;
+        let ranges = self.told.readings.to_vec();
+        let drift = match (self.mishap, self.scans) {
+            (Mishap::Fails, 3) => return Err(EmptyBattery),
+            (Mishap::Drifts, 2) => 1.0,
+            (Mishap::IsLost, 2) => 1e3,
+            _ => 0.0,
+        };
+        let mut pose = *expected;
+        pose.translation.x += drift;
+        Ok(Sensed { pose, ranges })
+    }
+
+    fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Result<Drive, EmptyBattery> {
+        self.drives += 1;
+        if self.mishap == Mishap::IsStopped && self.drives == 2 {
+            return Ok(Drive::Stopped { at: from + (to - from) * 0.5 });
+        }
+        Ok(self.told.drive(from, to).unwrap_or(Drive::Arrived))
+    }
+}
+
+/// Six cells, a wall behind the last one, and twelve scans at most.
+fn run_unlucky(mishap: Mishap) -> Run {
+    let told = Told { readings: SILENT, wall: 6.0 };
+    let mut robot = Unlucky { told, mishap, scans: 0, drives: 0 };
+    let mission = mission(6, &[0.0, 180.0], 1.0, budget(12, None));
+    explore(&mission, &mut robot, &mut |_, _| ControlFlow::Continue(())).unwrap()
+}
+
+#[test]
+fn a_robot_that_fails_ends_the_run_and_keeps_the_map() {
+    let run = run_unlucky(Mishap::Fails);
+    assert_eq!((run.ending, run.scans.len()), (Ending::RobotFailed, 2));
+    assert_eq!(run.failure.as_deref(), Some("the battery is empty"));
+    assert!(run.map.grid().cells().any(|cell| run.map.is_known(cell)));
+    let lost = run_unlucky(Mishap::IsLost);
+    assert_eq!((lost.ending, lost.scans.len()), (Ending::RobotFailed, 1));
+    assert!(lost.failure.is_some_and(|reason| reason.contains("outside of the map")));
+}
+
+#[test]
+fn a_robot_that_is_stopped_or_drifts_goes_on_from_where_it_is() {
+    for mishap in [Mishap::IsStopped, Mishap::Drifts] {
+        let run = run_unlucky(mishap);
+        assert!(run.failure.is_none(), "{mishap:?}: {:?}", run.ending);
+        // It went on, to the end of the corridor.
+        let places = places(&run);
+        assert!(places.iter().any(|x| *x < 2.0) && places.iter().any(|x| *x > 4.0), "{places:?}");
+        // The path has no gap: it ends where the last scan was taken.
+        let last = places[places.len() - 1];
+        close(run.trajectory[run.trajectory.len() - 1].x, last, 1e-12);
+    }
+    let drifted = run_unlucky(Mishap::Drifts);
+    assert!(
+        (drifted.scans[1].pose.translation.x - drifted.scans[0].pose.translation.x).abs() > 0.5
+    );
 }
 
 /// Nothing answers.

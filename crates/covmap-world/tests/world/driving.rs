@@ -12,7 +12,7 @@ fn stop(world: &World, from: (f64, f64), to: (f64, f64)) -> (Point2<f64>, bool) 
     let (from, to) = (Point2::new(from.0, from.1), Point2::new(to.0, to.1));
     match world.drive(from, to, RADIUS) {
         Drive::Arrived => (to, true),
-        Drive::Bumped { at } => (at, false),
+        Drive::Bumped { at } | Drive::Stopped { at } => (at, false),
     }
 }
 
@@ -61,7 +61,7 @@ proptest! {
             let goal = Point2::new(u, v);
             let (to, arrived) = match world.drive(from, goal, RADIUS) {
                 Drive::Arrived => (goal, true),
-                Drive::Bumped { at } => (at, false),
+                Drive::Bumped { at } | Drive::Stopped { at } => (at, false),
             };
             // The whole way was free …
             for k in 0..=100 {
