@@ -3,7 +3,7 @@
 use crate::{Mission, MissionError, ParameterError};
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
 use covmap_model::{Body, BodyEvent, Looks, ModelError, SensorModel};
-use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Promise, Reach};
+use covmap_plan::{BodyEvidence, CandidateRecord, CellStatus, Decision, Planner, Promise, Reach};
 use covmap_sonar::Scan;
 use nalgebra::Point2;
 
@@ -156,6 +156,14 @@ impl Explorer {
     /// The next view-point, the way there and the reason; `None` if nothing is open.
     pub fn decide(&mut self) -> Option<Decision> {
         self.planner.choose(&self.map, self.cell)
+    }
+
+    /// The same by a strategy of one's own: see [`Planner::choose_by`].
+    pub fn decide_by(
+        &mut self,
+        strategy: impl FnOnce(&[CandidateRecord]) -> Option<usize>,
+    ) -> Option<Decision> {
+        self.planner.choose_by(&self.map, self.cell, strategy)
     }
 
     /// The belief.

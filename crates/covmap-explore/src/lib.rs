@@ -22,4 +22,4 @@ pub use explorer::{Explorer, ScanError};
 pub use mission::{Limits, Mission, MissionError, standing_place};
 pub use parameters::{ParameterError, Parameters, RobotParameters};
 pub use robot::{RecordedRobot, Robot, Sensed};
-pub use run::{Ending, Run, View, explore};
+pub use run::{Ending, Run, View, explore, explore_by};

@@ -3,7 +3,7 @@
 use crate::{Event, Explorer, Mission, MissionError, Robot, Sensed, standing_place};
 use covmap::{Cell, CoverageMap, Raster};
 use covmap_model::BodyEvent;
-use covmap_plan::{CellStatus, Decision, Planner, Promise, Reach, turns};
+use covmap_plan::{CandidateRecord, CellStatus, Decision, Planner, Promise, Reach, turns};
 use covmap_sonar::{Drive, Range, Scan};
 use nalgebra::{Isometry2, Point2};
 use serde::{Deserialize, Serialize};
@@ -110,14 +110,21 @@ pub fn explore<R: Robot>(
     robot: &mut R,
     hook: &mut impl FnMut(&Event, &View<'_>) -> ControlFlow<()>,
 ) -> Result<Run, MissionError> {
-    let mut circle = Circle::new(mission, robot, hook)?;
-    let (ending, failure) = match circle.run() {
-        ControlFlow::Continue(ending) => (ending, None),
-        ControlFlow::Break(Stop::ByHook) => (Ending::Interrupted, None),
-        ControlFlow::Break(Stop::Failed(reason)) => (Ending::RobotFailed, Some(reason)),
-    };
-    let _ = circle.report(Event::End { ending });
-    Ok(circle.finish(ending, failure))
+    Circle::new(mission, robot, hook, None)?.finished()
+}
+
+/// The same with a strategy of one's own, which is given the candidates of every decision and returns the
+/// place of one of them: see [`Planner::choose_by`]. A run whose strategy returns none is over.
+///
+/// # Errors
+/// As [`explore`].
+pub fn explore_by<R: Robot>(
+    mission: &Mission,
+    robot: &mut R,
+    hook: &mut impl FnMut(&Event, &View<'_>) -> ControlFlow<()>,
+    strategy: &mut dyn FnMut(&[CandidateRecord]) -> Option<usize>,
+) -> Result<Run, MissionError> {
+    Circle::new(mission, robot, hook, Some(strategy))?.finished()
 }
 
 /// Why a run does not go on.
@@ -130,6 +137,9 @@ enum Stop {
 
 /// What goes on until there is a reason to stop.
 type Flow<T = ()> = ControlFlow<Stop, T>;
+
+/// A strategy of one's own.
+type Own<'a> = &'a mut dyn FnMut(&[CandidateRecord]) -> Option<usize>;
 
 /// What a robot did, or why it failed.
 fn done<T, E: Error>(result: Result<T, E>) -> Flow<T> {
@@ -144,6 +154,7 @@ struct Circle<'a, R, H> {
     mission: &'a Mission,
     robot: &'a mut R,
     hook: &'a mut H,
+    strategy: Option<Own<'a>>,
     explorer: Explorer,
     left_start: bool,
     /// The robot stands where a step ends: not yet, at a start that is off its cell's centre, nor where it
@@ -163,13 +174,19 @@ struct Circle<'a, R, H> {
 }
 
 impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R, H> {
-    fn new(mission: &'a Mission, robot: &'a mut R, hook: &'a mut H) -> Result<Self, MissionError> {
+    fn new(
+        mission: &'a Mission,
+        robot: &'a mut R,
+        hook: &'a mut H,
+        strategy: Option<Own<'a>>,
+    ) -> Result<Self, MissionError> {
         let explorer = Explorer::new(mission)?;
         Ok(Self {
             trajectory: vec![explorer.at()],
             mission,
             robot,
             hook,
+            strategy,
             explorer,
             left_start: false,
             settled: false,
@@ -183,9 +200,26 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
         })
     }
 
+    fn finished(mut self) -> Result<Run, MissionError> {
+        let (ending, failure) = match self.run() {
+            ControlFlow::Continue(ending) => (ending, None),
+            ControlFlow::Break(Stop::ByHook) => (Ending::Interrupted, None),
+            ControlFlow::Break(Stop::Failed(reason)) => (Ending::RobotFailed, Some(reason)),
+        };
+        let _ = self.report(Event::End { ending });
+        Ok(self.finish(ending, failure))
+    }
+
+    fn next(&mut self) -> Option<Decision> {
+        match &mut self.strategy {
+            None => self.explorer.decide(),
+            Some(own) => self.explorer.decide_by(own),
+        }
+    }
+
     fn run(&mut self) -> Flow<Ending> {
         self.scan()?;
-        while let Some(decision) = self.explorer.decide() {
+        while let Some(decision) = self.next() {
             if self.is_budget_spent() {
                 return ControlFlow::Continue(Ending::BudgetSpent);
             }

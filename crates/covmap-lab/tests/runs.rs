@@ -1,9 +1,12 @@
 //! Whole runs in small worlds: they end, they repeat, and their certificates hold.
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
-use covmap_explore::{Ending, Event, Limits, Mission, RecordedRobot, Run, TraceHasher, explore};
+use covmap_explore::{
+    Ending, Event, Limits, Mission, RecordedRobot, Run, TraceHasher, View, explore, explore_by,
+};
 use covmap_lab::{Accuracy, Config, SetupError, SimulatedRobot, TraceHeader, Truth};
-use covmap_plan::{CellStatus, Strategy};
+use covmap_plan::{CandidateRecord, CellStatus, Strategy};
+use covmap_statistics::{stream, uniform};
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use proptest::prelude::*;
 use proptest::strategy::Strategy as Generator;
@@ -258,4 +261,26 @@ fn a_mission_that_anybody_put_together_is_checked() {
         let error = header.mission().unwrap_err().to_string();
         assert!(error.starts_with("inside[1]: ("), "{error}");
     }
+}
+
+#[test]
+fn a_run_by_a_strategy_from_outside_ends_as_well() {
+    let (world, config) = (world(vec![]), config(Strategy::Cl));
+    let mission = covmap_lab::mission(&world, &config, None, Limits::default()).unwrap();
+    let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
+    let mut random = stream(1, "strategy", 0);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_precision_loss,
+        clippy::cast_sign_loss,
+        reason = "a few hundred candidates"
+    )]
+    let mut any = |candidates: &[CandidateRecord]| {
+        assert!(!candidates.is_empty());
+        Some((uniform(&mut random) * candidates.len() as f64) as usize)
+    };
+    let mut on = |_: &Event, _: &View<'_>| ControlFlow::Continue(());
+    let run = explore_by(&mission, &mut robot, &mut on, &mut any).unwrap();
+    assert_eq!(run.ending, Ending::Explored);
+    assert!(run.certificate.values().iter().all(|status| *status != CellStatus::Open));
 }

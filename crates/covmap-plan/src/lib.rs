@@ -26,6 +26,7 @@ mod exploration;
 mod ground;
 mod measured;
 mod memory;
+mod outside;
 mod parameters;
 mod passage;
 mod planner;

@@ -275,7 +275,7 @@ impl Planner {
     }
 
     /// The candidates with their costs for a robot in the cell `from`; gains and scores are not filled in.
-    fn records(&self, candidates: &Candidates, from: Cell) -> Vec<CandidateRecord> {
+    pub(crate) fn records(&self, candidates: &Candidates, from: Cell) -> Vec<CandidateRecord> {
         let record = |&index: &usize| CandidateRecord {
             cell: self.grid.cell(index),
             gain: 0.0,
@@ -292,7 +292,7 @@ impl Planner {
     }
 
     /// Fills in the gains of all records.
-    fn fill_gains(&mut self, records: &mut [CandidateRecord]) {
+    pub(crate) fn fill_gains(&mut self, records: &mut [CandidateRecord]) {
         let wanted = self.view_points(records);
         self.gains.refresh_gains(&wanted);
         for record in records {
@@ -363,6 +363,16 @@ impl Planner {
         let decided_by_oracle = if with_gain { self.decide_ties(map, &mut contest) } else { 0 };
         let target = contest.records[contest.best()?].cell;
         let records: Vec<_> = contest.left().map(|place| contest.records[place]).collect();
+        self.decision(candidates, from, (target, records, decided_by_oracle))
+    }
+
+    /// The decision for a target among some records, of which so many were decided by the oracle.
+    pub(crate) fn decision(
+        &mut self,
+        candidates: &Candidates,
+        from: Cell,
+        (target, records, decided_by_oracle): (Cell, Vec<CandidateRecord>, usize),
+    ) -> Option<Decision> {
         let negative_gains = records.iter().filter(|r| r.gain < 0.0).count();
         let best = self.report(records);
         let mut path = candidates.costs.path_to(target)?;

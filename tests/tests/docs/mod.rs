@@ -118,7 +118,7 @@ fn every_member_that_is_named_without_its_crate_exists() {
 
 #[test]
 fn every_claim_has_the_function_that_the_index_names() {
-    let sources = crate::rust_files(&root().join("xtask/src"));
+    let sources = crate::rust_files(&root().join("crates/covmap-cli/src"));
     let text = fs::read_to_string(root().join("docs/paper.md")).unwrap();
     // `crate::item` stands for all items.
     let is_lower = |span: &&str| {

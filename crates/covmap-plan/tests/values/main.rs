@@ -6,6 +6,7 @@ mod certificates;
 mod corridor;
 mod counting;
 mod decisions;
+mod outside;
 mod passages;
 mod stalls;
 mod travel;

@@ -5,7 +5,7 @@ use covmap_io::parse_ron;
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use std::path::Path;
 
-const OFFICE: &str = include_str!("../../../scenarios/office.ron");
+const OFFICE: &str = include_str!("../../../../scenarios/office.ron");
 
 /// The margin of a grid of .1 m around its world, in cells.
 const MARGIN: u32 = 3;

@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
 /// What is to be done, what there is to say about the world, and what tells that from others.
 fn task(arguments: &Explore) -> Result<(Task, Remarks, Vec<u8>)> {
     let (config, name) = input::config(arguments.config.as_deref())?;
-    let config = overridden(config, arguments);
+    let config = arguments.settings.apply(overridden(config, arguments))?;
     let read = world_file::read(&arguments.world, config.sonar.surface)?;
     let WorldFile { world, remarks, bytes } = read;
     let limits = Limits {
@@ -111,6 +111,7 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
         Some(task.experiment.mission.config.planner.strategy.file_name()),
         Some(task.experiment.seed.to_string()),
         other.map(output::stem),
+        arguments.settings.in_name(),
         arguments.effort.map(|effort| format!("{effort:?}").to_lowercase()),
         finer.map(|resolution| format!("r{resolution}")),
         start,

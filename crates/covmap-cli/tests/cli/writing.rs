@@ -233,9 +233,9 @@ fn a_log_that_cannot_be_written_is_what_the_error_names() {
     shell.refuse("log run --out nowhere/l.log", &["nowhere/l.log: cannot be written"]);
     shell.refuse("log run --out /dev/full", &["/dev/full: cannot be written: it is a device"]);
     // A limit on the size of files does what a full disk does.
-    let xtask = env!("CARGO_BIN_EXE_xtask");
+    let covmap = env!("CARGO_BIN_EXE_covmap");
     shell.write("l.log", "mine");
-    let limited = format!("trap '' XFSZ; ulimit -f 0; exec {xtask} log run --out l.log --force");
+    let limited = format!("trap '' XFSZ; ulimit -f 0; exec {covmap} log run --out l.log --force");
     let mut child = Command::new("sh")
         .args(["-c", &limited])
         .current_dir(shell.path(""))

@@ -32,7 +32,7 @@ impl Shell {
 
     /// The command of a line; words are separated by blanks.
     pub(crate) fn command(&self, line: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_xtask"));
+        let mut command = Command::new(env!("CARGO_BIN_EXE_covmap"));
         command.args(line.split_whitespace()).current_dir(self.folder.path());
         command
     }
@@ -92,7 +92,7 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
 
 /// A file of the repository.
 pub(crate) fn shipped(name: &str) -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
     root.join(name).to_str().unwrap().to_owned()
 }
 

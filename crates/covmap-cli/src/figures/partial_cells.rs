@@ -24,10 +24,10 @@ const CORNER: [f64; 2] = [2.5, 2.0];
 
 /// Four ways to cover 20 % of a cell.
 const CASES: [(char, &str, &str); 4] = [
-    ('a', "a slab at the far side, solid behind", include_str!("../../../scenarios/fig1a.ron")),
-    ('b', "a slab at the near side, free behind", include_str!("../../../scenarios/fig1b.ron")),
-    ('c', "the corner of a block", include_str!("../../../scenarios/fig1c.ron")),
-    ('d', "an oblique wall", include_str!("../../../scenarios/fig1d.ron")),
+    ('a', "a slab at the far side, solid behind", include_str!("../../../../scenarios/fig1a.ron")),
+    ('b', "a slab at the near side, free behind", include_str!("../../../../scenarios/fig1b.ron")),
+    ('c', "the corner of a block", include_str!("../../../../scenarios/fig1c.ron")),
+    ('d', "an oblique wall", include_str!("../../../../scenarios/fig1d.ron")),
 ];
 
 /// One way to cover the cell, and what was believed about it.

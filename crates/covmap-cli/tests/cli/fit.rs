@@ -174,7 +174,7 @@ fn a_log_without_a_laser_is_no_survey() {
 /// The walls of a recorded building, and a fit to it; skipped where the record is absent.
 #[test]
 fn a_recorded_robot_is_surveyed_and_fitted() {
-    let data = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/data/sonar8");
+    let data = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/sonar8");
     if !data.is_dir() {
         eprintln!("skipped: {} is not there", data.display());
         return;

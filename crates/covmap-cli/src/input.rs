@@ -16,13 +16,13 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// The shipped default, so that it works in any folder.
-const DEFAULT_CONFIG: &str = include_str!("../../configs/b21r.ron");
+const DEFAULT_CONFIG: &str = include_str!("../../../configs/b21r.ron");
 const DEFAULT_CONFIG_NAME: &str = "configs/b21r.ron";
 /// The paper without our additions.
-const PAPER_CONFIG: &str = include_str!("../../configs/paper.ron");
+const PAPER_CONFIG: &str = include_str!("../../../configs/paper.ron");
 const PAPER_CONFIG_NAME: &str = "configs/paper.ron";
 /// The robot of the logs in three files.
-const FOLDER_CONFIG: &str = include_str!("../../configs/sonar8.ron");
+const FOLDER_CONFIG: &str = include_str!("../../../configs/sonar8.ron");
 const FOLDER_CONFIG_NAME: &str = "configs/sonar8.ron";
 /// A beam, or the robot, may be so many cells long: beyond, tables of them fill the memory.
 const MOST_CELLS_ALONG: f64 = 1500.0;
@@ -49,7 +49,7 @@ pub(crate) fn folder_config(file: Option<&Path>) -> Result<(Config, PathBuf)> {
 
 /// The configuration in a file, or the default for lasers.
 pub(crate) fn laser_config(file: Option<&Path>) -> Result<(Config, PathBuf)> {
-    config_or(file, ("configs/laser.ron", include_str!("../../configs/laser.ron")))
+    config_or(file, ("configs/laser.ron", include_str!("../../../configs/laser.ron")))
 }
 
 fn config_or(file: Option<&Path>, (name, text): (&str, &str)) -> Result<(Config, PathBuf)> {

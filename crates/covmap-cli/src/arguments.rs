@@ -7,6 +7,7 @@ mod files;
 mod memory;
 mod read_out;
 mod safe_map;
+mod settings;
 mod values;
 
 pub(crate) use bench::{Bench, Rows};
@@ -14,9 +15,10 @@ pub(crate) use experiments::{Experiments, Figure, Paper, Table};
 pub(crate) use files::{Beside, Force, Log, Model, Truth};
 pub(crate) use read_out::{ReadOutFile, Reader};
 pub(crate) use safe_map::SafeMap;
+pub(crate) use settings::Settings;
 
 use crate::campaign::{Shard, VERSION};
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use covmap_model::Registers;
 use covmap_plan::Strategy;
 use effort::EffortName;
@@ -194,12 +196,28 @@ Example:
 /// A simulated robot with a ring of sonars explores a world until a certificate says of every
 /// cell why there is nothing left to do.
 #[derive(Debug, Parser)]
-#[command(name = "xtask", bin_name = "cargo xtask", version = VERSION, after_help = EXIT_CODES)]
+#[command(name = "covmap", version = VERSION, after_help = EXIT_CODES)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
     #[command(flatten)]
     pub(crate) memory: memory::Memory,
+}
+
+impl Arguments {
+    /// What was typed for a program of this name; its help says that name in the examples, too.
+    pub(crate) fn typed(name: &str) -> Result<Self, clap::Error> {
+        let mut command = named(Self::command().bin_name(name), name);
+        let mut matches = command.try_get_matches_from_mut(std::env::args_os())?;
+        Self::from_arg_matches_mut(&mut matches).map_err(|error| error.format(&mut command))
+    }
+}
+
+/// A command, and all below it, with examples of a program of this name.
+fn named(command: clap::Command, name: &str) -> clap::Command {
+    let own = command.get_after_help().map(|help| help.to_string().replace("cargo xtask", name));
+    let command = own.into_iter().fold(command, clap::Command::after_help);
+    command.mut_subcommands(|below| named(below, name))
 }
 
 #[derive(Debug, Subcommand)]
@@ -272,6 +290,8 @@ pub(crate) struct Explore {
     /// standard]
     #[arg(long, value_name = "EFFORT")]
     pub(crate) effort: Option<EffortName>,
+    #[command(flatten)]
+    pub(crate) settings: Settings,
     /// Seed of the noise
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seed: u64,
@@ -365,6 +385,8 @@ pub(crate) struct Map {
     /// Side of a cell in metres [default: as the configuration says, 0.1]
     #[arg(long, value_name = "M", value_parser = resolution)]
     pub(crate) resolution: Option<f64>,
+    #[command(flatten)]
+    pub(crate) settings: Settings,
     /// A frame is used if the robot moved this far since the last one used, or turned:
     /// standing still is no evidence. 0 uses every frame
     #[arg(long, value_name = "M", value_parser = every, default_value = "0.05")]

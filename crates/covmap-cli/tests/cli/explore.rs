@@ -55,7 +55,7 @@ const KEYS: [&str; 27] = [
 #[test]
 fn the_version_names_the_commit_or_a_hash_of_the_sources() {
     let typed = Shell::new().expect("--version", 0);
-    let version = typed.out.trim().strip_prefix("xtask ").unwrap();
+    let version = typed.out.trim().strip_prefix("covmap ").unwrap();
     let (cargo, build) = version.split_once('+').unwrap();
     assert_eq!(cargo, env!("CARGO_PKG_VERSION"));
     let is_hash = |text: &str| text.len() == 12 && text.bytes().all(|b| b.is_ascii_hexdigit());
@@ -380,4 +380,22 @@ fn help_names_all_options() {
     for command in ["explore", "explain", "map", "log", "truth", "model"] {
         assert!(help.contains(command), "{command}");
     }
+}
+
+#[test]
+fn a_parameter_is_set_without_a_file_of_ones_own() {
+    let shell = Shell::new();
+    let line = |rest: &str| {
+        let lab = shipped("scenarios/lab.ron");
+        format!("explore {lab} --resolution 0.2 --max-scans 2 --quiet {rest}")
+    };
+    shell.expect(&line("--set planner.scope=Reachable --set planner.entropy_threshold=1.5"), 3);
+    let run = "out/lab-IG_CL-0.1-1-scope_Reachable-entropy_threshold_1.5-r0.2-max2";
+    let trace = std::fs::read_to_string(shell.path(&format!("{run}/trace.jsonl"))).unwrap();
+    assert!(
+        trace.contains(r#""scope":"Reachable""#) && trace.contains(r#""entropy_threshold":1.5"#)
+    );
+    shell.refuse(&line("--set planner.scoop=1"), &["--set planner.scoop=1: ", "is no parameter"]);
+    shell.refuse(&line("--set planner.entropy_threshold=9"), &["entropy_threshold: 9 must lie in"]);
+    shell.refuse(&line("--set resolution=fine"), &["--set resolution=fine", "invalid type"]);
 }

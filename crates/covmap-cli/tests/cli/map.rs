@@ -233,7 +233,7 @@ fn a_run_whose_trace_is_damaged_has_no_log() {
 #[test]
 #[allow(clippy::print_stdout, reason = "a test that is skipped says so")]
 fn real_logs_become_maps() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
     let data = root.join("../shared/data/sonar8");
     let Ok(data) = data.canonicalize() else {
         println!("skipped: there are no logs in {}", data.display());

@@ -49,7 +49,8 @@ pub(super) struct Seen {
 impl Moment {
     /// Explores up to a decision.
     pub(super) fn reach(config: &Config, wanted: usize) -> Result<Self> {
-        let scenario = parse_ron(Path::new(WORLD), include_str!("../../../../scenarios/lab.ron"))?;
+        let scenario =
+            parse_ron(Path::new(WORLD), include_str!("../../../../../scenarios/lab.ron"))?;
         let world = World::from_scenario(&scenario, config.sonar.surface)?;
         let limits = Limits { while_driving: None, max_scans: None };
         let mission = covmap_lab::mission(&world, config, None, limits)?;

@@ -122,6 +122,7 @@ fn config(arguments: &Map) -> Result<Config> {
     if let Some(resolution) = arguments.resolution {
         config.resolution = resolution;
     }
+    let config = arguments.settings.apply(config)?;
     input::check(&config, &name)?;
     Ok(config)
 }
@@ -216,6 +217,7 @@ fn folder_name(arguments: &Map) -> Result<PathBuf> {
         config.as_deref().map(output::stem),
         poses.as_deref().map(output::stem),
         finer.map(|resolution| format!("r{resolution}")),
+        arguments.settings.in_name(),
         output::unlike(*every, 0.05).map(|every| format!("every{every}")),
         output::unlike(*every_degrees, 5.0).map(|degrees| format!("turn{degrees}")),
         arguments.read_out.path().map(output::stem),

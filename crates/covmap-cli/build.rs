@@ -7,19 +7,11 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// What the program is made of.
-const SOURCES: [&str; 8] = [
-    "Cargo.toml",
-    "Cargo.lock",
-    "crates",
-    "configs/fit",
-    "scenarios",
-    "xtask/Cargo.toml",
-    "xtask/build.rs",
-    "xtask/src",
-];
+const SOURCES: [&str; 6] =
+    ["Cargo.toml", "Cargo.lock", "crates", "configs/fit", "scenarios", "xtask"];
 
 fn main() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     for source in SOURCES {
         println!("cargo::rerun-if-changed={}", root.join(source).display());
     }

@@ -37,7 +37,7 @@ struct Trace {
 impl Limits {
     /// Explores a small world with all four.
     pub(crate) fn measure(config: &Config, session: &Session<'_>) -> Result<Self> {
-        let text = include_str!("../../../scenarios/lab.ron");
+        let text = include_str!("../../../../scenarios/lab.ron");
         let scenario: Scenario = parse_ron(Path::new("scenarios/lab.ron"), text)?;
         let world = World::from_scenario(&scenario, config.sonar.surface)?;
         let most = if session.quick { QUICK_SCANS } else { SCANS };

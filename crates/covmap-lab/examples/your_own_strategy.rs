@@ -1,0 +1,32 @@
+//! A strategy from outside: the most gain for a metre of way.
+//!
+//! ```text
+//! cargo run -p covmap-lab --example your_own_strategy
+//! ```
+#![allow(clippy::print_stdout, reason = "an example prints")]
+
+use covmap_explore::{Event, Limits, View, explore_by};
+use covmap_lab::{Config, SimulatedRobot, mission};
+use covmap_plan::CandidateRecord;
+use covmap_world::{Extent, Scenario, World};
+use std::ops::ControlFlow;
+
+/// The most gain for a metre of way.
+fn per_metre(candidates: &[CandidateRecord]) -> Option<usize> {
+    let rate = |i: &usize| candidates[*i].gain / (candidates[*i].cost + 0.1);
+    (0..candidates.len()).max_by(|a, b| rate(a).total_cmp(&rate(b)))
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let mut config = Config::b21r();
+    config.resolution = 0.2;
+    let extent = Extent { width: 4.0, height: 3.0 };
+    let scenario = Scenario { name: "room".into(), extent, start: None, obstacles: vec![] };
+    let world = World::from_scenario(&scenario, config.sonar.surface)?;
+    let mission = mission(&world, &config, None, Limits::default())?;
+    let mut robot = SimulatedRobot::new(&world, &config, 1)?;
+    let mut on = |_: &Event, _: &View<'_>| ControlFlow::Continue(());
+    let run = explore_by(&mission, &mut robot, &mut on, &mut per_metre)?;
+    println!("{:?} after {} scans, {:.1} m", run.ending, run.scans.len(), run.path_length);
+    Ok(())
+}
