@@ -4,6 +4,7 @@
 mod bad_input;
 mod bad_maps;
 mod bench;
+mod beside;
 mod campaign;
 mod explain;
 mod explore;
