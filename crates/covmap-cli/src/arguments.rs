@@ -298,10 +298,10 @@ pub(crate) struct Explore {
     /// Side of a cell in metres [default: as the configuration says, 0.1]
     #[arg(long, value_name = "M", value_parser = resolution)]
     pub(crate) resolution: Option<f64>,
-    /// Measure also on the way, every so many metres [default: at view-points only]
+    /// Measure also on the way, at this distance in metres [default: at view-points only]
     #[arg(long, value_name = "M", value_parser = while_driving)]
     pub(crate) while_driving: Option<f64>,
-    /// End after so many scans [default: no limit]
+    /// End after this number of scans [default: no limit]
     #[arg(long, value_name = "N")]
     pub(crate) max_scans: Option<NonZeroUsize>,
     /// Where the robot starts: metres, metres, and degrees counter-clockwise from the x axis
@@ -391,7 +391,7 @@ pub(crate) struct Map {
     /// standing still is no evidence. 0 uses every frame
     #[arg(long, value_name = "M", value_parser = every, default_value = "0.05")]
     pub(crate) every: f64,
-    /// ... or turned by so many degrees
+    /// ... or turned by this angle in degrees
     #[arg(long, value_name = "DEG", value_parser = every_degrees, default_value = "5")]
     pub(crate) every_degrees: f64,
     #[command(flatten)]
@@ -454,13 +454,13 @@ pub(crate) struct Readings {
     /// Robot and physics of the sonars [default: configs/sonar8.ron, built in]
     #[arg(long, value_name = "FILE")]
     pub(crate) config: Option<PathBuf>,
-    /// Fit the physics by a local search of so many evaluations; 0 compares only
+    /// Fit the physics by a local search with this number of evaluations; 0 compares only
     #[arg(long, value_name = "N", default_value_t = 0)]
     pub(crate) fit: usize,
     /// A frame is used if the robot moved this far since the last one used, or turned
     #[arg(long, value_name = "M", value_parser = every, default_value = "0.05")]
     pub(crate) every: f64,
-    /// ... or turned by so many degrees
+    /// ... or turned by this angle in degrees
     #[arg(long, value_name = "DEG", value_parser = every_degrees, default_value = "5")]
     pub(crate) every_degrees: f64,
     /// Where the results go
@@ -478,7 +478,7 @@ pub(crate) struct Campaign {
     /// What is run (.ron)
     #[arg(value_name = "CAMPAIGN.ron")]
     pub(crate) file: PathBuf,
-    /// So many runs at the same time [default: one for each core]
+    /// The number of runs at the same time [default: one for each core]
     #[arg(long, value_name = "N")]
     pub(crate) jobs: Option<NonZeroUsize>,
     /// Takes the world called NAME from another file than the campaign says

@@ -88,7 +88,6 @@ impl Row {
         let Classes { free, partial, solid } = &self.summary.measured;
         let there: Vec<f64> =
             [free, partial, solid].iter().filter_map(|c| c.log_likelihood).collect();
-        #[allow(clippy::cast_precision_loss, reason = "at most 3")]
         let mean = there.iter().sum::<f64>() / there.len() as f64;
         (!there.is_empty()).then_some(mean)
     }

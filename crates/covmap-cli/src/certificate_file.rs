@@ -10,7 +10,7 @@ use nalgebra::Point2;
 use std::io::Write;
 use std::path::Path;
 
-/// A file of so many bytes is of no map that covmap makes.
+/// A file with more bytes is of no map that covmap makes.
 const LONGEST: u64 = 4 << 30;
 
 const HEADER: &str = "x,y,status,entropy,counted_scans,expected_change,from_x,from_y";

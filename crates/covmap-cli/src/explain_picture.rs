@@ -11,7 +11,7 @@ use nalgebra::Point2;
 const OPACITY: f64 = 0.9;
 /// The lowest gain stands here on the scale of colours: black are walls.
 const LOWEST: f64 = 0.2;
-/// So many cells are shown around what is known.
+/// The number of cells that are shown around what is known.
 const MARGIN: i32 = 3;
 const BEST: Rgb = Rgb(30, 160, 190);
 

@@ -228,7 +228,6 @@ fn report(written: &Written, counts: &MapCounts, folder: &Path) {
 
 /// What is cut off, and what cuts it off.
 fn cut_off(cut_off: &CutOff, resolution: f64) -> String {
-    #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
     let area = cut_off.cells as f64 * resolution * resolution;
     let bars = [
         (cut_off.bumps, "bumps"),

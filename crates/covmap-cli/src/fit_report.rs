@@ -202,7 +202,7 @@ impl Paired {
     }
 }
 
-/// So many examples, in words.
+/// A number of examples, in words.
 fn of_examples(n: usize) -> String {
     format!("{n} {}", if n == 1 { "example" } else { "examples" })
 }

@@ -24,7 +24,7 @@ const PAPER_CONFIG_NAME: &str = "configs/paper.ron";
 /// The robot of the logs in three files.
 const FOLDER_CONFIG: &str = include_str!("../../../configs/sonar8.ron");
 const FOLDER_CONFIG_NAME: &str = "configs/sonar8.ron";
-/// A beam, or the robot, may be so many cells long: beyond, tables of them fill the memory.
+/// The most cells that a beam, or the robot, may be long: beyond, tables of them fill the memory.
 const MOST_CELLS_ALONG: f64 = 1500.0;
 
 /// An error about a file, in one sentence that names it.

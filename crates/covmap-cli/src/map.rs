@@ -278,7 +278,6 @@ fn warning(skipped: &Skipped, mapper: &Mapper) -> Option<String> {
 }
 
 /// The share of the known cells that are not pinned with an entropy above .65 nats.
-#[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
 fn share_uncertain(map: &CoverageMap) -> f64 {
     let measured = map.grid().cells().filter(|cell| map.is_known(*cell) && !map.is_pinned(*cell));
     let (mut all, mut above) = (0usize, 0usize);

@@ -9,7 +9,7 @@ use covmap_log::{Account, Readings, SensorAccount};
 use std::io::Write;
 use std::path::Path;
 
-/// The readings of so many sensors are told one by one; those of more are in a file.
+/// The most sensors whose readings are told one by one; those of more are in a file.
 const MOST_TOLD: usize = 32;
 
 /// What the map depends on, and what says so: a sentence each.

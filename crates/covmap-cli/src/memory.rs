@@ -10,13 +10,13 @@ const GIB: f64 = (1u64 << 30) as f64;
 /// How many bytes are allowed: by default as many as `--memory` says in its help.
 static LIMIT: AtomicU64 = AtomicU64::new(4 << 30);
 
-/// Allows so many GiB from now on.
+/// Allows this many GiB from now on.
 pub(crate) fn allow(gib: f64) {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    #[allow(clippy::cast_possible_truncation, reason = "saturates")]
     LIMIT.store((gib * GIB) as u64, Ordering::Relaxed);
 }
 
-/// Checks that a run with a configuration on a grid fits; so many of it at the same time.
+/// Checks that a run with a configuration on a grid fits, and how many of it at the same time.
 pub(crate) fn check_run(grid: &Grid, config: &Config, at_once: usize) -> Result<()> {
     let times = u64::try_from(at_once).unwrap_or(u64::MAX);
     let bytes = run_bytes(config, grid)?.saturating_mul(times);
@@ -66,7 +66,6 @@ fn check(bytes: u64, what: impl Fn() -> String) -> Result<()> {
 
 /// An amount of memory as one would say it.
 fn amount(bytes: u64) -> String {
-    #[allow(clippy::cast_precision_loss, reason = "printed with one digit")]
     let gib = bytes as f64 / GIB;
     if gib < 1.0 { format!("{:.0} MiB", 1024.0 * gib) } else { format!("{gib:.1} GiB") }
 }

@@ -35,11 +35,7 @@ impl Window {
                 let Some(coverage) = truth.coverage.get(cell).copied() else { continue };
                 let counts = run.map.is_known(cell) && !run.map.is_pinned(cell);
                 if counts && Class::of(coverage) == Class::Partial {
-                    #[allow(
-                        clippy::cast_possible_truncation,
-                        clippy::cast_sign_loss,
-                        reason = "0–9"
-                    )]
+                    #[allow(clippy::cast_possible_truncation, reason = "0–9")]
                     let tenth = (coverage * 10.0) as usize;
                     tenths[tenth.min(9)] += 1.0;
                 }

@@ -268,7 +268,6 @@ fn faded(map: &CoverageMap, explored: f64) -> Raster<Rgb> {
 }
 
 /// The entropy of a cell of which nothing is known, ln n \[nats\].
-#[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
 fn most_entropy(map: &CoverageMap) -> f64 {
     (map.bins() as f64).ln()
 }

@@ -9,7 +9,7 @@ use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// Looking at the whole map takes time: so long passes between two looks, and so many times
+/// Looking at the whole map takes time: this long passes between two looks, and this many times
 /// as long as the last one took.
 const PAUSE: Duration = Duration::from_millis(100);
 const PATIENCE: u32 = 20;

@@ -33,7 +33,7 @@ const MARGIN: f64 = 1.0;
 /// What there is by the laser is the nearest of its echoes within this of a sonar's axis \[rad\]:
 /// 7.5°, whatever the cone of the simulated sonars.
 const CONE: f64 = 7.5 * std::f64::consts::PI / 180.0;
-/// The noise of so many seeds makes the shares of the simulated readings.
+/// The number of seeds whose noise makes the shares of the simulated readings.
 const SEEDS: u64 = 4;
 /// Scans of sonar and laser whose times differ by no more are of the same frame \[s\].
 const SAME_TIME: f64 = 1e-6;

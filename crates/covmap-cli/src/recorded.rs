@@ -46,9 +46,9 @@ pub(crate) struct Frames {
     pub(crate) account: Account,
 }
 
-/// So many readings are held at the same time, in some 300 MB.
+/// The most readings that are held at the same time, in some 300 MB.
 const MOST_READINGS: usize = 16_000_000;
-/// A scan is as large as so many readings, without its own.
+/// A scan is as large as this number of readings, without its own.
 const SCAN_SIZE: usize = 8;
 
 /// How much of a log is held.

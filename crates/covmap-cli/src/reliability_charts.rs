@@ -7,7 +7,7 @@ use covmap_fit::Reliability;
 const FEW: usize = 50;
 
 /// For each of some maps two panels: what the intervals of every class hold, and the error of
-/// cells by their entropy. `of` says which cells they are, of maps with so many bins.
+/// cells by their entropy. `of` says which cells they are, of maps with `bins` bins.
 pub(crate) fn figure(of: &str, maps: &[(&str, &Reliability)], bins: usize) -> Figure {
     let panels = maps.iter().flat_map(|(name, reliability)| {
         [Panel::from(intervals(name, reliability)), errors(name, reliability, bins).into()]
@@ -65,7 +65,6 @@ fn errors(name: &str, reliability: &Reliability, bins: usize) -> Chart {
         line: true,
         marks: true,
     };
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let most = (bins as f64).ln();
     Chart {
         title: titled(name, "Error against entropy"),

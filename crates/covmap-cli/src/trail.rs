@@ -1,8 +1,8 @@
-//! A path that is drawn: however long it is, only so many points are kept.
+//! A path that is drawn: however long it is, a bounded number of its points is kept.
 
 use nalgebra::Point2;
 
-/// So many corners a line in a picture may have.
+/// The most corners of a line in a picture.
 const MOST: usize = 20_000;
 
 /// The corners of a path \[m\], every n-th of them once there are too many.
@@ -10,7 +10,7 @@ const MOST: usize = 20_000;
 pub(crate) struct Trail {
     /// Each with whether nothing is known of the way to it.
     corners: Vec<(Point2<f64>, bool)>,
-    /// So many corners are left out after each.
+    /// The number of corners that are left out after each.
     left_out: usize,
     passed: usize,
     /// Whether the path was broken since the last corner that is kept.

@@ -106,7 +106,6 @@ fn point(cells: &[Measured], readings: usize, of: impl Fn(&Histogram) -> f64) ->
     ChartPoint { low: at(5), high: at(95), ..ChartPoint::new(count(readings), mean) }
 }
 
-#[allow(clippy::cast_precision_loss, reason = "some hundred")]
 fn count(n: usize) -> f64 {
     n as f64
 }

@@ -9,9 +9,9 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Limits {
-    /// Measure also while driving, every so many metres; `None` measures at view-points only.
+    /// The distance between scans while driving \[m\]; `None` measures at view-points only.
     pub while_driving: Option<f64>,
-    /// End after so many scans.
+    /// End after this number of scans.
     pub max_scans: Option<usize>,
 }
 

@@ -8,9 +8,9 @@ pub(crate) trait Objective {
     fn at(&self, place: &[f64]) -> (f64, Vec<f64>);
 }
 
-/// So many of the last steps tell the curvature.
+/// The number of last steps from which the curvature is estimated.
 const MEMORY: usize = 12;
-/// At most so many steps.
+/// The most steps.
 const STEPS: usize = 400;
 /// Where no slope is steeper than this, the maximum is found.
 const FLAT: f64 = 1e-6;

@@ -122,7 +122,6 @@ impl ExampleScore {
     }
 }
 
-#[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
 fn count(cells: usize) -> f64 {
     cells as f64
 }

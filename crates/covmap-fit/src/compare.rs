@@ -310,7 +310,6 @@ fn average(
     for (block, sums) in sums.iter().enumerate() {
         let times = drawn.map_or(1.0, |drawn| drawn[block]);
         let sum = sums.get(class);
-        #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
         let count = sum.cells as f64;
         cells += times * count;
         total += times * sum.measures[measure];

@@ -94,7 +94,6 @@ impl Weighting {
         self,
         cells: impl ExactSizeIterator<Item = Class> + Clone,
     ) -> impl Iterator<Item = f64> {
-        #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
         let share = |count: usize| 1.0 / count.max(1) as f64;
         let of_class = ByClass::from_fn(|class| match (self, class) {
             (_, None) => 0.0,
@@ -119,7 +118,6 @@ impl Weighting {
                 let classes = [Class::Free, Class::Partial, Class::Solid].into_iter();
                 let there = classes.filter(|class| is_there(*class)).map(Some);
                 let means: Vec<f64> = there.map(of).collect::<Option<_>>()?;
-                #[allow(clippy::cast_precision_loss, reason = "at most 3")]
                 let mean = means.iter().sum::<f64>() / means.len() as f64;
                 (!means.is_empty()).then_some(mean)
             }

@@ -92,7 +92,6 @@ impl Method {
     /// if there are none.
     pub fn training_mean(model: ModelParameters, examples: &[Example]) -> Self {
         let partial = || truths(examples).filter(|c| Class::of(*c) == Class::Partial);
-        #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
         let mean = partial().sum::<f64>() / partial().count() as f64;
         Self { model, update: Update::Constant(if mean.is_finite() { mean } else { 0.5 }) }
     }
@@ -176,7 +175,6 @@ impl Method {
 
 /// The prior probability of a bin: `share` is uniform over the bins, the rest is coverage 0.
 fn prior_probability(share: f64, bin: usize, bins: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let even = share / bins as f64;
     if bin == 0 { 1.0 - share + even } else { even }
 }

@@ -11,7 +11,7 @@ const SHRINKAGE: f64 = 1e-3;
 /// Not more cells are looked at: every second, third … of more is enough, and memory is finite.
 const MOST_CELLS: usize = 400_000;
 
-/// So many cells are summed up by one thread: the sum is a function of the cells.
+/// The number of cells that one thread sums up: the sum is a function of the cells.
 const CHUNK: usize = 1024;
 
 /// Fits a read-out to posteriors of `bins` bins, each with the true coverage of its cell:
@@ -155,7 +155,6 @@ mod tests {
         for percent in [10, 30, 50, 90] {
             let (posterior, _) = &cells[100 * (percent - 1)];
             let found = read(&read_out, posterior)[1];
-            #[allow(clippy::cast_precision_loss, reason = "small")]
             let truth = percent as f64 / 100.0;
             assert!((found - truth).abs() < 0.02, "{found} {truth}");
         }
@@ -224,7 +223,7 @@ mod tests {
                 let sum: f64 = p.iter().sum();
                 let p: Vec<f64> = p.iter().map(|p| p / sum).collect();
                 for k in 0..4 {
-                    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "small")]
+                    #[allow(clippy::cast_possible_truncation, reason = "small")]
                     let times = (400.0 * p[k]).round() as usize;
                     cells.extend(std::iter::repeat_n((p.clone(), bin_coverage(k, 4)), times));
                 }

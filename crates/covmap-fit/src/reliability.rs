@@ -84,12 +84,11 @@ fn levels() -> impl Iterator<Item = f64> {
 /// Which band an entropy is in: they divide what it can be, 0 to ln n, evenly.
 fn band(entropy: f64, bins: usize) -> usize {
     let place = entropy / libm::log(count(bins)) * count(BANDS);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    #[allow(clippy::cast_possible_truncation, reason = "saturates")]
     let band = place as usize;
     band.min(BANDS - 1)
 }
 
-#[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
 fn count(cells: usize) -> f64 {
     cells as f64
 }

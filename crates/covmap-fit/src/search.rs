@@ -39,7 +39,7 @@ pub(crate) fn higher(
     }
 }
 
-/// A place drawn at random may not be allowed: so many are tried.
+/// The number of places drawn at random that are tried, since one may not be allowed.
 const DRAWS: usize = 1000;
 
 /// A place in the unit cube that is allowed, drawn at random; `given` if none is found.

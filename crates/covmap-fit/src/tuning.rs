@@ -147,7 +147,7 @@ pub struct TuneSettings {
     /// Whether the likelihood is that of the output after a calibration table, fitted to the
     /// same examples at every evaluation: for a method that will have such a table.
     pub calibrated: bool,
-    /// The budget: so many evaluations are made, no more and no fewer. When a search ends
+    /// The budget: this many evaluations are made, no more and no fewer. When a search ends
     /// before, another one begins at a place drawn at random.
     pub evaluations: usize,
 }

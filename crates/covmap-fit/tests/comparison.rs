@@ -20,9 +20,8 @@ fn uniform(mut state: u64) -> impl FnMut() -> f64 {
         state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let mut z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        #[allow(clippy::cast_precision_loss, reason = "53 bits")]
-        let u = ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64;
-        u
+
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
     }
 }
 

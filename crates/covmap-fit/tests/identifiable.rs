@@ -19,7 +19,6 @@ fn random(seed: u64) -> impl FnMut() -> f64 {
         let mut z = state;
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        #[allow(clippy::cast_precision_loss, reason = "53 bits are exact")]
         let bits = ((z ^ (z >> 31)) >> 11) as f64;
         bits / 9_007_199_254_740_992.0
     }

@@ -47,7 +47,7 @@ pub(crate) struct Belief {
     is_changed: Vec<bool>,
 }
 
-/// So many columns on either side of a row can be read, past its cells, as if they were cells.
+/// The number of columns on either side of a row that can be read, past its cells, as if they were cells.
 pub(crate) const PAD: usize = LANES;
 
 /// In place of an expected coverage: no reading has touched the cell.
@@ -247,7 +247,7 @@ impl Belief {
     }
 
     /// The histograms of the cells from column `x` of row `y` on, which may begin up to [`PAD`]
-    /// columns before the first one, and end so many past the last.
+    /// columns before the first one, and end as far past the last.
     #[inline(always)]
     pub(crate) fn prior_at(&self, y: usize, x: isize) -> Prior<'_> {
         let place = self.row(y) + PAD.wrapping_add_signed(x);
@@ -334,7 +334,7 @@ impl Belief {
     }
 }
 
-/// The columns of a padded row of so many cells.
+/// The columns of a padded row with a number of cells.
 pub(crate) fn padded(width: usize) -> usize {
     width.next_multiple_of(LANES) + 2 * PAD
 }

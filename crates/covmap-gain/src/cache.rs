@@ -25,11 +25,11 @@ use staleness::{BeamState, CellChange, GroupState, Onlookers};
 /// gain of the view-points that are compared.
 pub const GAIN_TOLERANCE: f64 = 1e-5;
 
-/// At most so many outcomes of beams of groups are evaluated together, if all are likely: this bounds
+/// The most outcomes of beams of groups that are evaluated together, if all are likely: this bounds
 /// the memory of their probabilities, 64 bytes each.
 const OUTCOMES_TOGETHER: usize = 1 << 22;
 
-/// One thread works at so many rows of groups, or groups, at least: to wake another one up takes
+/// The fewest rows of groups, or groups, that one thread works at: to wake another one up takes
 /// longer than to look through them.
 const ROWS_PER_THREAD: usize = 8;
 const GROUPS_PER_THREAD: usize = 4096;
@@ -347,7 +347,7 @@ impl GainCache {
         largest.into_cells()
     }
 
-    /// So many rows of view-points are evaluated together.
+    /// The number of rows of view-points that are evaluated together.
     fn rows_together(&self) -> usize {
         let outcomes = self.beams.first().map_or(1, RasterBeam::outcomes);
         let of_row = groups_per_row(&self.grid) * self.beams.len() * outcomes;
@@ -400,7 +400,7 @@ impl GainCache {
     }
 }
 
-/// Cuts rows of view-points, by their y, in portions of at most so many that span at most so many
+/// Cuts rows of view-points, by their y, in portions of at most `most` that span at most `span`
 /// rows of the grid: what is computed for the cells around a portion needs memory for all of them.
 fn portions<T>(rows: &[(usize, T)], most: usize, span: usize) -> Vec<&[(usize, T)]> {
     let mut portions = Vec::new();

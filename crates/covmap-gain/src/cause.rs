@@ -48,7 +48,7 @@ use pulp::Arch;
 use rayon::prelude::*;
 use sums::{AllAndReasons, GainsOfRow, GroupSum, LargestOfRow};
 
-/// So many rows of view-points are worked at by one thread at least.
+/// The fewest rows of view-points that one thread works at.
 const ROWS_PER_THREAD: usize = 1;
 
 /// Evaluates E\[I\] of many beams.
@@ -85,7 +85,6 @@ impl Cause {
         let ModelParameters { bins, .. } = *model.parameters();
         let (p, r) = (parameters, model.resolution());
         let (free, covered) = ((0.0, p.free.sigma), (1.0, p.sigma_behind));
-        #[allow(clippy::cast_precision_loss, reason = "at most 16 bearings")]
         let all = p.bearings as f64;
         let most_any = all / (all + p.chance);
         let most_passed = p.free.share * p.no_echo.share.max(most_any);
@@ -237,7 +236,6 @@ impl Cause {
 fn evidence(bins: usize, (mu, sigma): (f64, f64), share: f64) -> Evidence {
     let mut t = vec![0.0; bins];
     gaussian(mu, sigma, &mut t);
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let even = (1.0 - share) / bins as f64;
     t.iter_mut().for_each(|t| *t = even + share * *t);
     Evidence::of(t)

@@ -25,7 +25,6 @@ pub fn expected_information_gain(
 ) -> f64 {
     let changes = |beam| expected_changes(map, model, stencil, beam, prediction, view_point);
     let sum: f64 = stencil.beams.iter().flat_map(changes).sum();
-    #[allow(clippy::cast_precision_loss, reason = "few beams")]
     let beams = stencil.beams.len() as f64;
     sum / beams
 }

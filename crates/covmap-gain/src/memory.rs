@@ -20,7 +20,7 @@ pub(crate) struct Size {
     pub(crate) beams: f64,
     /// The cells of all beams of a stencil.
     pub(crate) stencil: f64,
-    /// The cells of all beams at one distance: so many distances are told apart, but for the
+    /// The cells of all beams at one distance: the number of distances that are told apart, but for the
     /// symmetry of a ring of sensors that looks the same after a quarter turn.
     pub(crate) cells_per_ring: f64,
     /// How many ranges there are.
@@ -67,7 +67,7 @@ impl Size {
 
 /// A number of bytes.
 pub(crate) fn whole(bytes: f64) -> u64 {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    #[allow(clippy::cast_possible_truncation, reason = "saturates")]
     let bytes = bytes as u64;
     bytes
 }

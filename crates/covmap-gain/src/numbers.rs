@@ -2,9 +2,7 @@
 
 /// A count. Exact below 2⁵³.
 pub(crate) fn as_f64(count: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "counts are small")]
-    let count = count as f64;
-    count
+    count as f64
 }
 
 /// A number of a table, which is kept as f32 for speed.

@@ -40,7 +40,7 @@ struct ProbeBlock {
 }
 
 impl ProbeBlock {
-    /// Of h and h·log h of at most so many; the others are 0.
+    /// Of h and h·log h of at most this many bins; the others are 0.
     fn new(probes: &[(Vec<f64>, Vec<f64>)]) -> Self {
         let bins = probes.first().map_or(0, |(h, _)| h.len());
         let (mut h, mut h_hat) = (vec![0.0; bins * LANES], vec![0.0; bins * LANES]);

@@ -71,7 +71,6 @@ pub fn range_likelihood(
     reflection: impl Fn(usize) -> f64,
     out: &mut RangeLikelihood,
 ) {
-    #[allow(clippy::cast_precision_loss, reason = "some hundred outcomes")]
     let even = uniform_share / (beam.rings.len() + 1) as f64;
     let keep = 1.0 - uniform_share;
     let mut survival = 1.0;

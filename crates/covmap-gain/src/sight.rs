@@ -196,7 +196,7 @@ impl RasterBeam {
         for lane in 0..LANES {
             let none = if with_no_echo[lane] >= LIKELY { as_f64(last) } else { 0.0 };
             let seen = if none > seen[lane] { none } else { seen[lane] };
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a rank")]
+            #[allow(clippy::cast_possible_truncation, reason = "a rank")]
             (out[lane] = seen as u16);
         }
         out
@@ -227,7 +227,7 @@ impl RasterBeam {
         }
         let mut cells = 0;
         for lane in (0..LANES).filter(|lane| view_points >> lane & 1 == 1) {
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "counts")]
+            #[allow(clippy::cast_possible_truncation, reason = "counts")]
             let (covered, traced) = (farthest[lane] as usize, likelihood.traced[lane] as usize);
             let traced = self.stencil.rings[..traced].last().map_or(0, |ring| ring.end);
             cells = cells.max(covered).max(traced);

@@ -85,7 +85,7 @@ impl Stencil {
     pub fn new(model: &SensorModel, heading: f64) -> Self {
         let r = model.resolution();
         let usable = model.parameters().usable_range;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "some hundred")]
+        #[allow(clippy::cast_possible_truncation, reason = "some hundred")]
         let count = (usable / r + 1e-9).floor() as u32;
         let ranges: Vec<f64> = (0..=count).map(|k| f64::from(k) * r).collect();
         let beams = beams_around(model, heading, &ranges);

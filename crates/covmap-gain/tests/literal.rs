@@ -23,7 +23,7 @@ const PLAIN: RangePrediction = RangePrediction {
     novelty: 1.0,
 };
 
-/// One view-point of so many is compared with the literal equations, which are slow.
+/// One view-point in this many is compared with the literal equations, which are slow.
 const SAMPLED: usize = 37;
 
 struct Setting {
@@ -112,7 +112,6 @@ fn some_causes() -> impl Strategy<Value = ModelParameters> {
     let rest = (0.0..=1.0f64, 0.0..=1.0f64, prop_oneof![Just(0.0), 0.1..1.5f64], any::<bool>());
     let bins = prop::sample::select(vec![6, 11, 16]);
     (bins, free, answers, end, behind, rest).prop_map(|(bins, free, answers, end, behind, rest)| {
-        #[allow(clippy::cast_precision_loss, reason = "few bins")]
         let bin = 1.0 / (bins - 1) as f64;
         let cause = CauseParameters {
             bearings: answers.0,

@@ -133,7 +133,6 @@ impl Truth {
 
 /// The mean of some numbers; 0 for none.
 pub(crate) fn mean(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
     let count = values.len().max(1) as f64;
     // A sum of nothing would be −0.
     values.fold(0.0, |sum, value| sum + value) / count

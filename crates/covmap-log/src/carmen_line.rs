@@ -124,7 +124,7 @@ fn end(fields: &mut Fields<'_>) -> Result<Stamp, Damage> {
     Ok(Stamp { time, logger: fields.number_if_any() })
 }
 
-/// Checks that so many words come before the time, the host and the logger's time, which may
+/// Checks that the right number of words comes before the time, the host and the logger's time, which may
 /// be left out.
 fn expect_words(fields: &Fields<'_>, count: usize, words: usize) -> Result<(), Damage> {
     let there = fields.left();

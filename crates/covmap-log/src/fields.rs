@@ -85,7 +85,7 @@ impl<'a> Fields<'a> {
         word.parse().map_err(|_| unreadable(field, &format!("`{}` is not a count", short(word))))
     }
 
-    /// A pose from three fields, in units of which a metre and a radian have so many.
+    /// A pose from three fields, whose units go this many times into a metre and a radian.
     pub(super) fn pose(
         &mut self,
         fields: [&str; 3],
@@ -97,7 +97,7 @@ impl<'a> Fields<'a> {
         Ok(Isometry2::new(place, self.number(theta)? / per_radian))
     }
 
-    /// So many ranges, in units of which a metre has `per_metre`; NaN and infinity, too.
+    /// A number of ranges, in units of which a metre has `per_metre`; NaN and infinity, too.
     pub(super) fn ranges(&mut self, count: usize, per_metre: f64) -> Result<Vec<Written>, Damage> {
         let range = |i, fields: &mut Self| {
             let word = fields.words.get(fields.next).copied().unwrap_or_default();

@@ -128,7 +128,6 @@ fn checked(beams: usize) -> Result<usize, Damage> {
 }
 
 fn laser(beams: usize) -> Vec<covmap_sonar::Beam> {
-    #[allow(clippy::cast_precision_loss, reason = "at most 361")]
     let step = PI / (beams - 1) as f64;
     let mount = Isometry2::translation(LASER_AHEAD, 0.0);
     laser_beams(&mount, beams, (-FRAC_PI_2, step), LASER_RANGES)

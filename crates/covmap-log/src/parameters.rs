@@ -202,7 +202,6 @@ fn spread(
     field: Option<Stated>,
     step: Option<Stated>,
 ) -> Option<(f64, Stated)> {
-    #[allow(clippy::cast_precision_loss, reason = "a line has no more than a million beams")]
     let (beams, gaps) = (count as f64, count.saturating_sub(1).max(1) as f64);
     let step = match (&field, step) {
         (Some(field), Some(step)) if (field.value / step.value - gaps).abs() <= 1.01 => {
@@ -236,7 +235,7 @@ fn both(a: &str, b: &str) -> String {
     if a == b { a.to_owned() } else { format!("{a} and {b}") }
 }
 
-/// The step of lasers that have so many beams \[degrees\].
+/// The step of lasers with a number of beams \[degrees\].
 fn usual_step(count: usize) -> Option<f64> {
     match count {
         101 | 180 | 181 => Some(1.0),

@@ -8,9 +8,9 @@ use super::{LogError, SkipReason, Skipped};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
-/// So many poses a file may have: they are held at the same time, in some 130 MB.
+/// The most poses that a file may have: they are held at the same time, in some 130 MB.
 pub(super) const MOST_POSES: usize = 2_000_000;
-/// Where a clock started anew, so many runs of time around the last are looked through.
+/// Where a clock started anew, this many runs of time around the last are looked through.
 const RUNS_AROUND: usize = 8;
 
 /// The units of a file of poses.

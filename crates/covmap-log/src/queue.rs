@@ -10,9 +10,9 @@ use nalgebra::Isometry2;
 use std::collections::VecDeque;
 use std::path::Path;
 
-/// So many frames may wait for the odometry after them.
+/// The most frames that wait for the odometry after them.
 const MOST_WAITING: usize = 256;
-/// Among so many of the last frames, those with poses of their own are put in the order of time.
+/// The number of last frames among which those with poses of their own are put in the order of time.
 const SORTED: usize = 8;
 /// Fewer frames with another clock than this are some for which the clock leapt.
 const FEWEST_APART: usize = 4;
@@ -21,7 +21,7 @@ const LATEST_FRAME: f64 = 60.0;
 
 enum State {
     Open,
-    /// So many fixes come before it.
+    /// The number of fixes before it.
     Known(usize),
     Lost(Damage),
 }

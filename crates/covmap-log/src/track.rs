@@ -8,7 +8,7 @@ pub(super) const LONGEST_GAP: f64 = 2.0;
 /// A line may come so much later than what is stamped alike \[s\]. A clock that is farther off
 /// has leapt.
 pub(super) const LATEST_LINE: f64 = 2.0;
-/// So many of the last poses are remembered: at 1000 Hz those of 4 s.
+/// The number of last poses that are remembered: at 1000 Hz those of 4 s.
 const REMEMBERED: usize = 4096;
 
 /// When something was: by the clock of its sensor, and by that of the logger \[s\].

@@ -6,7 +6,7 @@ use std::collections::VecDeque;
 
 /// Less is the trembling of a robot that stands \[m\].
 const SHORTEST_STEP: f64 = 0.01;
-/// So many poses are kept between two frames; every second of more.
+/// The most poses that are kept between two frames; of more, every second one.
 const MOST: usize = 4096;
 
 /// Where the robot passed between two frames, by its odometry.
@@ -52,7 +52,7 @@ impl Way {
         }
     }
 
-    /// The way to a frame with a pose by odometry, which has so many fixes before it.
+    /// The way to a frame with a pose by odometry, which has a number of fixes before it.
     pub(super) fn to(&mut self, before: usize, stamp: Stamp, pose: Isometry2<f64>) -> Vec<Passed> {
         let mut way = self.until(before);
         way.push(self.step(stamp, pose));

@@ -243,7 +243,6 @@ impl Touched {
         for (k, p) in p[..bins].iter_mut().enumerate() {
             *p /= self.likelihood(bin_coverage(k, bins)).max(f64::MIN_POSITIVE);
         }
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let all = PROBABILITY_FLOOR * bins as f64;
         normalise_above(&mut p[..bins], all);
         p
@@ -253,7 +252,6 @@ impl Touched {
 /// Raises the bins of a histogram to those of a uniform one of weight `least`, and normalises it.
 fn normalise_above(p: &mut [f64], least: f64) {
     let sum: f64 = p.iter().sum();
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let floor = least / p.len() as f64;
     p.iter_mut().for_each(|p| *p = (*p / sum).max(floor));
     let sum: f64 = p.iter().sum();

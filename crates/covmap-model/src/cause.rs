@@ -131,7 +131,6 @@ impl<'a> Clues<'a> {
     /// S.
     fn first(&self) -> f64 {
         let clear = &self.clear[..self.parameters.bearings];
-        #[allow(clippy::cast_precision_loss, reason = "at most 16")]
         let mean = clear.iter().sum::<f64>() / clear.len() as f64;
         libm::pow(mean, self.parameters.first_echo)
     }
@@ -173,12 +172,7 @@ impl CauseParameters {
     /// The bearing of a cell.
     #[inline(always)]
     pub fn bearing(&self, across: f64) -> usize {
-        #[allow(
-            clippy::cast_precision_loss,
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "at most 16; saturates"
-        )]
+        #[allow(clippy::cast_possible_truncation, reason = "at most 16; saturates")]
         let bearing = (across * self.bearings as f64) as usize;
         bearing.min(self.bearings - 1)
     }
@@ -285,7 +279,6 @@ impl Causes {
         let mut ended = vec![0.0; out.len()];
         gaussian(role.mu, role.sigma, &mut ended);
         gaussian(0.0, parameters.free.sigma, out);
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let even = (1.0 - shares.ended - shares.passed) / out.len() as f64;
         for (o, ended) in out.iter_mut().zip(&ended) {
             *o = even + shares.ended * ended + shares.passed * *o;

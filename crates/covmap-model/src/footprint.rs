@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 /// Bearings closer than this to the border of a sector lie on it [rad].
 const BORDER: f64 = 1e-9;
 
-/// So many cells of a row are looked at side by side.
+/// The number of cells of a row that are looked at side by side.
 const WIDE: usize = 8;
 
 /// Which cells belong to a beam.
@@ -352,7 +352,6 @@ mod tests {
         FootprintRule::Sectors { half_angle: 7.5 * std::f64::consts::PI / 180.0 };
 
     fn grid(cells: usize) -> Grid {
-        #[allow(clippy::cast_precision_loss, reason = "a small grid")]
         let half = cells as f64 * 0.05;
         Grid::new(Point2::new(-half, -half), 0.1, cells, cells).unwrap()
     }

@@ -236,7 +236,6 @@ impl ModelParameters {
             return Err(ModelError::Bins(self.bins));
         }
         ModelError::within("usable_range", self.usable_range, 0.1, 100.0)?;
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let half_bin = 0.5 / (self.bins - 1) as f64;
         match &self.update {
             Update::Product(product) => product.validate(self.usable_range, half_bin),

@@ -50,7 +50,6 @@ fn a_model() -> impl Strategy<Value = ModelParameters> {
         (0.0..0.4f64).prop_map(|half_angle| FootprintRule::Cones { half_angle }),
     ];
     (2..=64usize, a_cause(), rule).prop_map(|(bins, mut cause, footprint)| {
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let bin = 1.0 / (bins - 1) as f64;
         for sigma in [&mut cause.sigma_in.base, &mut cause.sigma_behind, &mut cause.free.sigma] {
             *sigma *= bin.max(0.1);

@@ -11,7 +11,7 @@ use covmap::CoverageMap;
 use covmap_gain::{BeamStencil, GAIN_TOLERANCE, ViewPoints, expected_changes};
 use rayon::prelude::*;
 
-/// So many candidates are evaluated first, and twice as many whenever that was not enough. To
+/// The number of candidates that are evaluated first; it doubles whenever that was not enough. To
 /// evaluate a few more costs less than another turn.
 const FIRST: usize = 64;
 

@@ -75,7 +75,6 @@ impl Planner {
 
     /// Whether next to nothing is known of a cell.
     fn is_blank(&self, index: usize) -> bool {
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let largest = libm::log(self.model.parameters().bins as f64);
         f64::from(self.gains.entropy(index)) >= BLANK * largest
     }

@@ -129,7 +129,7 @@ pub struct PlannerParameters {
     pub scan_spacing: f64,
     /// A practical cap on the scans counted for one cell; reported whenever it fires.
     pub max_counted_scans: u32,
-    /// What a turn of one radian costs IG_CL, as much as so many metres of way \[m/rad\]: d(l, x) of
+    /// The cost of a turn of one radian to IG_CL, in metres of way \[m/rad\]: d(l, x) of
     /// Eq. (16) is the length of the way and this for all turns on it. 0, the paper: turns cost nothing.
     pub turn_cost: f64,
     /// Which cells must be explored.
@@ -261,7 +261,7 @@ impl PlannerParameters {
 
     /// The longest passage that is tried, in cells; `None` if none is.
     pub(crate) fn longest_passage(&self, resolution: f64) -> Option<usize> {
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 1e6")]
+        #[allow(clippy::cast_possible_truncation, reason = "at most 1e6")]
         let cells = (self.passage_length / resolution + 1e-9).min(1e6) as usize;
         (self.passage_length > 0.0).then_some(cells)
     }

@@ -5,7 +5,7 @@ use crate::travel_costs;
 use covmap::{Cell, CoverageMap, Grid, Steps, neighbour, step_between};
 use covmap_gain::ViewPoints;
 
-/// A passage is worth trying if beyond it the robot could stand on so many times the area of
+/// A passage is worth trying if beyond it the robot could stand on this many times the area of
 /// its body, about a square metre: pockets behind bumps are not.
 pub(crate) const ROOM: usize = 4;
 

@@ -366,7 +366,7 @@ impl Planner {
         self.decision(candidates, from, (target, records, decided_by_oracle))
     }
 
-    /// The decision for a target among some records, of which so many were decided by the oracle.
+    /// The decision for a target among some records; `decided_by_oracle` of them were told apart by the oracle.
     pub(crate) fn decision(
         &mut self,
         candidates: &Candidates,

@@ -125,7 +125,6 @@ impl SonarRing {
                     return Err(RingError::Count(count));
                 }
                 let sensor = |i: usize| {
-                    #[allow(clippy::cast_precision_loss, reason = "few sensors")]
                     let angle = TAU * (i as f64 + 0.5) / count as f64;
                     let (sin, cos) = libm::sincos(angle);
                     let (x, y) = (radius * cos, radius * sin);

@@ -7,7 +7,7 @@ pub type Grouped<T> = Vec<Vec<T>>;
 
 /// More resamples than this are not drawn.
 const MOST: usize = 1_000_000;
-/// So many resamples must have a statistic for its error to be known.
+/// The fewest resamples with a statistic for which its error is known.
 const FEWEST: usize = 20;
 
 /// The statistic of all observations with its standard error, by drawing whole groups with
@@ -40,7 +40,6 @@ pub fn bootstrap<T>(
     if resampled.len() < FEWEST.min(times).max(1) {
         return Some(certain);
     }
-    #[allow(clippy::cast_precision_loss, reason = "a few thousand resamples")]
     let (n, k) = (resampled.len() as f64, groups.len() as f64);
     let mean = resampled.iter().sum::<f64>() / n;
     let variance = resampled.iter().map(|v| (v - mean) * (v - mean)).sum::<f64>() / n;
@@ -53,7 +52,6 @@ mod tests {
     use super::*;
 
     fn mean(values: &[&f64]) -> Option<f64> {
-        #[allow(clippy::cast_precision_loss, reason = "a few numbers")]
         let n = values.len() as f64;
         (!values.is_empty()).then(|| values.iter().copied().sum::<f64>() / n)
     }

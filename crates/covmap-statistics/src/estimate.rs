@@ -31,7 +31,6 @@ impl Estimate {
     /// The mean of independent values; `None` for none.
     pub fn of_mean(values: &[f64]) -> Option<Self> {
         let Spread { n, mean, deviation, .. } = Spread::of(values)?;
-        #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
         let standard_error = deviation.map_or(f64::INFINITY, |sd| sd / (n as f64).sqrt());
         Some(Self { value: mean, standard_error, groups: n })
     }

@@ -14,7 +14,6 @@ pub fn holm(p_values: &[f64]) -> Vec<f64> {
     let mut adjusted = vec![1.0; p_values.len()];
     let mut largest = 0.0f64;
     for (rank, index) in order.into_iter().enumerate() {
-        #[allow(clippy::cast_precision_loss, reason = "a few tests")]
         let left = (p_values.len() - rank) as f64;
         largest = largest.max((left * p_values[index]).min(1.0));
         adjusted[index] = largest;

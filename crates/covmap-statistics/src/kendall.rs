@@ -25,7 +25,6 @@ pub fn kendall_tau(a: &[f64], b: &[f64]) -> Option<f64> {
             ordered_b += sb * sb;
         }
     }
-    #[allow(clippy::cast_precision_loss, reason = "fewer pairs than a list can have")]
     let [agreement, a, b] = [agreement, ordered_a, ordered_b].map(|pairs| pairs as f64);
     let scale = (a * b).sqrt();
     (scale > 0.0).then(|| agreement / scale)

@@ -20,7 +20,6 @@ pub const LIKELIHOOD_FLOOR: f64 = 0.001;
 /// Unless there are at least two bins.
 pub fn log_likelihood(probabilities: &[f64], coverage: f64, floor: f64) -> f64 {
     let (k, t) = lower_bin(coverage, probabilities.len());
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let even = floor / probabilities.len() as f64;
     let log = |p: f64| libm::log((1.0 - floor) * p + even);
     (1.0 - t) * log(probabilities[k]) + t * log(probabilities[k + 1])

@@ -28,7 +28,6 @@ fn mixed(mut z: u64) -> u64 {
 
 /// Uniform in \[0, 1\).
 pub fn uniform(rng: &mut Pcg64) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "53 bits are exact")]
     let bits = (rng.next_u64() >> 11) as f64;
     bits * (1.0 / 9_007_199_254_740_992.0)
 }

@@ -5,9 +5,8 @@
 /// `uniform` draws uniform numbers in \[0, 1).
 pub fn resample(groups: usize, mut uniform: impl FnMut() -> f64) -> Vec<usize> {
     let mut draw = || {
-        #[allow(clippy::cast_precision_loss, reason = "few groups")]
         let place = uniform() * groups as f64;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "few groups")]
+        #[allow(clippy::cast_possible_truncation, reason = "few groups")]
         let group = place as usize;
         group.min(groups - 1)
     };

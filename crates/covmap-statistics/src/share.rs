@@ -11,7 +11,6 @@ use crate::Estimate;
 /// value p̃ = (successes + 2) / (trials + 4)    standard error = √(p̃ (1 − p̃) / (trials + 4))
 /// ```
 pub fn share_estimate(successes: usize, trials: usize) -> Option<Estimate> {
-    #[allow(clippy::cast_precision_loss, reason = "a few hundred trials")]
     let (k, n) = (successes as f64, trials as f64);
     let p = (k + 2.0) / (n + 4.0);
     let standard_error = (p * (1.0 - p) / (n + 4.0)).sqrt();

@@ -21,7 +21,6 @@ impl Spread {
     /// The numbers are taken as independent: runs that share a start are not quite.
     pub fn of(values: &[f64]) -> Option<Self> {
         let n = values.len();
-        #[allow(clippy::cast_precision_loss, reason = "there are not that many runs")]
         let count = n as f64;
         if n == 0 {
             return None;

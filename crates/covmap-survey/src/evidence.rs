@@ -168,7 +168,6 @@ fn inside(
     length: f64,
 ) -> Option<(f64, f64)> {
     let low = grid.lower_left();
-    #[allow(clippy::cast_precision_loss, reason = "a grid has at most 2e7 cells")]
     let high = low + Vector2::new(grid.width() as f64, grid.height() as f64) * grid.resolution();
     let (mut from, mut to) = (0.0_f64, length);
     for axis in 0..2 {

@@ -6,7 +6,7 @@ use super::view::View;
 use super::wall::{Wall, passed, pieces};
 use rayon::prelude::*;
 
-/// The thickness is found in so many steps.
+/// The number of steps in which the thickness is found.
 const STEPS: u32 = 5;
 /// No wall is thinner [m].
 const THINNEST: f64 = 0.02;
@@ -91,7 +91,6 @@ fn free_depth(views: &[View], wall: &Wall, thickness: f64) -> f64 {
         let line = Line { at: wall.line.at + wall.line.back() * depth, along: wall.line.along };
         let passed = passed(views, &line, start, pieces(length), CLEAR);
         let open = passed.iter().filter(|&&count| count >= 2).count();
-        #[allow(clippy::cast_precision_loss, reason = "small counts")]
         let share = open as f64 / passed.len() as f64;
         if share < SHARE {
             break;

@@ -141,10 +141,10 @@ impl Merged {
     }
 }
 
-/// The squares along a segment, and so many around them.
+/// The squares along a segment, and a margin of squares around them.
 fn squares((from, to): (Point2<f64>, Point2<f64>), around: i64) -> Vec<(i64, i64)> {
     let steps = ((to - from).norm() / (0.5 * SQUARE)).ceil().clamp(1.0, 1e4);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+    #[allow(clippy::cast_possible_truncation, reason = "clamped")]
     let count = steps as u32;
     let mut squares = Vec::new();
     for step in 0..=count {

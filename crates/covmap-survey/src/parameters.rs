@@ -21,9 +21,9 @@ pub struct SurveyParameters {
     pub grazing: f64,
     /// Echoes of a scan that are on one wall are at most this far from its line \[m\].
     pub split_distance: f64,
-    /// A segment in a scan has at least so many echoes …
+    /// The fewest echoes of a segment in a scan …
     pub min_echoes: usize,
-    /// … and this length \[m\].
+    /// … and its least length \[m\].
     pub min_length: f64,
     /// Segments of one wall differ at most by this angle \[rad\] …
     pub merge_angle: f64,
@@ -32,7 +32,7 @@ pub struct SurveyParameters {
     /// … and this gap along it \[m\]. A wall is also closed over such a gap where no beam went
     /// through.
     pub merge_gap: f64,
-    /// A wall is seen from at least so many views; so is a post.
+    /// The fewest views from which a wall, or a post, is seen.
     pub min_views: usize,
     /// A wall or post is not there if more than this share of the beams that could meet it
     /// went through.

@@ -70,7 +70,6 @@ fn post(
     views: &[View],
     parameters: &SurveyParameters,
 ) -> Option<Post> {
-    #[allow(clippy::cast_precision_loss, reason = "small counts")]
     let count = echoes.len() as f64;
     let mean = echoes.iter().map(|(_, at)| at.coords).sum::<Vector2<f64>>() / count;
     let center = Point2::from(mean);
@@ -98,7 +97,6 @@ fn post(
     if left.min(right) < parameters.min_views {
         return None;
     }
-    #[allow(clippy::cast_precision_loss, reason = "small counts")]
     let passed = passed as f64;
     let stands = passed <= parameters.max_passed * (count + passed);
     stands.then(|| Post { center: rounded(center), radius: rounded(Point2::new(radius, 0.0)).0 })

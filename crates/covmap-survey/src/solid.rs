@@ -13,7 +13,7 @@ use nalgebra::{Point2, Vector2};
 const SAME: f64 = 0.005;
 /// Walls that turn by less leave no gap behind their corner (the sine).
 const STRAIGHT: f64 = 0.1;
-/// The back of a corner lies at most so many thicknesses behind its front [1].
+/// The most thicknesses that the back of a corner lies behind its front [1].
 const FAR: f64 = 3.0;
 
 impl WallSegment {

@@ -6,7 +6,7 @@ use super::view::{Echo, View};
 use nalgebra::Point2;
 use std::ops::Range;
 
-/// So many beams in a row may have no echo on one surface.
+/// The most beams in a row without an echo on one surface.
 const MISSING: usize = 3;
 
 /// A straight piece of surface in one scan.

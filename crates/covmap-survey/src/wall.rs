@@ -12,15 +12,15 @@ const PIECE: f64 = 0.05;
 /// A beam went through if it started this far in front and ended this far behind, or the
 /// other way round [m].
 const CLEAR: f64 = 0.1;
-/// So many beams that went through say that a piece is open where there is no echo.
+/// The number of beams that went through from which a piece is open where there is no echo.
 const OPEN: u32 = 2;
-/// So many echoes make a piece of wall.
+/// The fewest echoes that make a piece of wall.
 const HITS: u32 = 2;
 /// Fronts of one direction that are nearer than this many merge distances are one [1].
 const HIDDEN: f64 = 2.0;
-/// So many echoes of a wall are asked whether they came through another one.
+/// The number of echoes of a wall that are asked whether they came through another one.
 const SAMPLE: usize = 200;
-/// Echoes farther than so many residuals from the line are not used for it [1].
+/// Echoes farther than this many residuals from the line are not used for it [1].
 const OUTLIER: f64 = 2.5;
 
 /// A wall, and what speaks for it.
@@ -84,14 +84,14 @@ pub(super) fn passed(
 }
 
 fn piece_at(place: f64, count: usize) -> Option<usize> {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "saturates")]
+    #[allow(clippy::cast_possible_truncation, reason = "saturates")]
     let piece = (place / PIECE).floor().max(0.0) as usize;
     (place >= 0.0 && piece < count).then_some(piece)
 }
 
 /// The number of pieces of a length.
 pub(super) fn pieces(length: f64) -> usize {
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped")]
+    #[allow(clippy::cast_possible_truncation, reason = "clamped")]
     let count = (length / PIECE).ceil().clamp(1.0, 1e6) as usize;
     count
 }
@@ -123,9 +123,7 @@ impl Profile {
     }
 
     fn middle(&self, piece: usize) -> f64 {
-        #[allow(clippy::cast_precision_loss, reason = "at most 1e6")]
-        let place = self.start + (piece as f64 + 0.5) * PIECE;
-        place
+        self.start + (piece as f64 + 0.5) * PIECE
     }
 
     /// The stretches that are wall, by their first and last piece.
@@ -142,7 +140,6 @@ impl Profile {
             if is_taken(self.middle(piece)) || (passed >= OPEN && goes_through) {
                 open = true;
             } else if hits >= HITS {
-                #[allow(clippy::cast_precision_loss, reason = "at most 1e6")]
                 let gap = |last: usize| (piece - last - 1) as f64 * PIECE;
                 match stretches.last_mut() {
                     Some((_, last)) if !open && gap(*last) <= parameters.merge_gap => *last = piece,
@@ -207,7 +204,6 @@ pub(super) fn walls(
     mut fronts: Vec<Front>,
     parameters: &SurveyParameters,
 ) -> Vec<Wall> {
-    #[allow(clippy::cast_precision_loss, reason = "small")]
     let least = parameters.min_views as f64;
     fronts.retain(|front| front.moments.count >= least);
     fronts.sort_by(|f, g| g.moments.count.total_cmp(&f.moments.count));

@@ -45,11 +45,7 @@ pub struct Solids<'a> {
 impl Solids<'_> {
     /// The exact coverage of every cell of a grid.
     pub fn coverage(&self, grid: &Grid) -> Raster<f64> {
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_possible_wrap,
-            reason = "a grid has at most 2e7 cells"
-        )]
+        #[allow(clippy::cast_possible_truncation, reason = "a grid has at most 2e7 cells")]
         let (width, height) = (grid.width() as i32, grid.height() as i32);
         let boxes: Vec<_> = self.outlines.iter().map(Outline::bounds).collect();
         let starts: Vec<i32> = (0..height).step_by(BAND as usize).collect();
@@ -295,7 +291,6 @@ fn overlapping(pieces: &[Piece]) -> f64 {
         contour.iter().zip(next).map(cross).sum()
     };
     let total: i128 = shapes.iter().flatten().map(twice).sum();
-    #[allow(clippy::cast_precision_loss, reason = "rounds to the nearest f64")]
     let total = total.abs() as f64;
     0.5 * total / (UNITS * UNITS)
 }

@@ -141,20 +141,12 @@ fn is_solid_cell(solid: &Raster<bool>, x: i32, y: i32, outside: bool) -> bool {
     solid.get(Cell::new(x, y)).copied().unwrap_or(outside)
 }
 
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
-    reason = "a grid has at most 2e7 cells"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "a grid has at most 2e7 cells")]
 fn columns(grid: &Grid) -> i32 {
     grid.width() as i32
 }
 
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
-    reason = "a grid has at most 2e7 cells"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "a grid has at most 2e7 cells")]
 fn rows(grid: &Grid) -> i32 {
     grid.height() as i32
 }

@@ -180,11 +180,7 @@ struct Fan {
 
 impl Fan {
     fn new(range: f64, resolution: f64) -> Self {
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "clamped to a small number"
-        )]
+        #[allow(clippy::cast_possible_truncation, reason = "clamped to a small number")]
         let count = (TAU * range / (0.5 * resolution)).ceil().clamp(64.0, 8192.0) as u32;
         let direction = |k: u32| {
             let (sin, cos) = libm::sincos(TAU * (f64::from(k) + 0.5) / f64::from(count));

@@ -110,7 +110,6 @@ impl World {
         let solid = raster_world::trimmed(solid, MARGIN);
         let grid = solid.grid();
         let low = grid.lower_left();
-        #[allow(clippy::cast_precision_loss, reason = "a grid has at most 2e7 cells")]
         let high =
             low + Vector2::new(grid.width() as f64, grid.height() as f64) * grid.resolution();
         let corners = [low, Point2::new(high.x, low.y), high, Point2::new(low.x, high.y)];
@@ -234,7 +233,6 @@ impl World {
         let cells = (MARGIN / resolution - 1e-9).ceil().clamp(MARGIN_CELLS, 1e5);
         #[allow(
             clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
             reason = "clamped; a resolution that is not a number is refused next"
         )]
         Grid::covering(self.low, self.size(), resolution, cells as usize)

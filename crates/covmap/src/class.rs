@@ -31,11 +31,9 @@ impl Class {
 /// # Panics
 /// Unless there are at least two bins.
 pub fn lower_bin(coverage: f64, bins: usize) -> (usize, f64) {
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let place = coverage.clamp(0.0, 1.0) * (bins - 1) as f64;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "below 64")]
+    #[allow(clippy::cast_possible_truncation, reason = "below 64")]
     let k = (place.floor() as usize).min(bins - 2);
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let t = place - k as f64;
     (k, t)
 }

@@ -148,12 +148,10 @@ impl Grid {
             let count = (length / resolution - 1e-9).ceil().max(1.0);
             #[allow(
                 clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
                 reason = "at least 1; saturates, and is then refused as too large"
             )]
             (count as usize).saturating_add(margin.saturating_mul(2))
         };
-        #[allow(clippy::cast_precision_loss, reason = "a margin is a few cells")]
         let shift = margin as f64 * resolution;
         let corner = lower_left - Vector2::new(shift, shift);
         Self::new(corner, resolution, cells(size.x), cells(size.y))
@@ -241,11 +239,7 @@ impl Grid {
     /// The cell with a row-major index, whether it lies in the grid or not.
     #[inline]
     pub fn cell(&self, index: usize) -> Cell {
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_possible_wrap,
-            reason = "a grid has at most 2e7 cells"
-        )]
+        #[allow(clippy::cast_possible_truncation, reason = "a grid has at most 2e7 cells")]
         Cell::new((index % self.width) as i32, (index / self.width) as i32)
     }
 

@@ -18,9 +18,7 @@ pub const PROBABILITY_FLOOR: f64 = 1e-9;
 /// Choice: bins stand **at** coverages and not between them, so that 0, 1 and, with 11 bins,
 /// the 0.2 of the paper's Fig. 1 are exact. Fewer than two bins stand as two do.
 pub fn bin_coverage(bin: usize, bins: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
-    let ratio = bin as f64 / (bins.max(2) - 1) as f64;
-    ratio
+    bin as f64 / (bins.max(2) - 1) as f64
 }
 
 /// The product of a prior and the evidence of one measurement, bin by bin, as in Eq. (8),
@@ -76,7 +74,6 @@ impl Histogram {
     /// Unless `bins` is in [`MIN_BINS`]`..=`[`MAX_BINS`].
     pub fn uniform(bins: usize) -> Self {
         assert!((MIN_BINS..=MAX_BINS).contains(&bins), "{bins} bins");
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let p = 1.0 / bins as f64;
         Self { probabilities: vec![p; bins] }
     }

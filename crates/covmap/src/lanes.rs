@@ -11,7 +11,7 @@ pub const LANES: usize = 16;
 /// [`LANES`] numbers.
 pub type Lanes = [f32; LANES];
 
-/// So many [`Lanes`] are computed together where they can be: a long chain of operations on
+/// The number of [`Lanes`] that are computed together where they can be: a long chain of operations on
 /// one of them would leave the processor waiting.
 pub const TOGETHER: usize = 4;
 
@@ -56,7 +56,6 @@ pub fn fused(a: f32, b: f32, c: f32) -> f32 {
 pub fn ln<const N: usize>(x: &[f32; N]) -> [f32; N] {
     // Shifts the borders of the binades to √½·2^e, so that e rounds to the nearest.
     let shifted = map(x, |x| x.to_bits().wrapping_sub(0x3f35_04f3));
-    #[allow(clippy::cast_precision_loss, reason = "an exponent")]
     let exponent = map(&shifted, |s| (s.cast_signed() >> 23) as f32);
     let z = map(&shifted, |s| f32::from_bits((s & 0x007f_ffff) + 0x3f35_04f3) - 1.0);
     let square = map(&z, |z| z * z);

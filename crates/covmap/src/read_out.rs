@@ -136,7 +136,6 @@ impl ReadOut {
     /// This and [`Self::read`]: if the slices differ in length.
     pub fn clues(posterior: &[f64], out: &mut [f64]) {
         assert_eq!(posterior.len(), out.len(), "a place for each bin");
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let even = READ_OUT_FLOOR / posterior.len() as f64;
         for (o, p) in out.iter_mut().zip(posterior) {
             *o = libm::log((1.0 - READ_OUT_FLOOR) * p + even);

@@ -74,7 +74,7 @@ pub(crate) struct Experiments {
     /// Fewer seeds, coarser cells, smaller worlds: a look, not a result
     #[arg(long)]
     pub(crate) quick: bool,
-    /// So many runs at the same time [default: one for each core]
+    /// The number of runs at the same time [default: one for each core]
     #[arg(long, value_name = "N")]
     pub(crate) jobs: Option<NonZeroUsize>,
     /// Where results go, and from where runs that are done are taken

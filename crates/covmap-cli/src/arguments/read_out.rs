@@ -27,7 +27,7 @@ pub(crate) struct Reader {
 }
 
 impl ReadOutFile {
-    /// Reads and checks the file, for maps of so many bins.
+    /// Reads and checks the file, for maps with a number of bins.
     pub(crate) fn load(&self, bins: usize) -> Result<Reader> {
         let Some(file) = &self.read_out else { return Ok(Reader::default()) };
         let read_out: ReadOut = read_ron(file)?;

@@ -40,12 +40,7 @@ pub(super) fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
 pub(super) fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
-    #[allow(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "some hundred values"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "some hundred values")]
     let rank = (sorted.len() as f64 * share).ceil() as usize;
     sorted.get(rank.saturating_sub(1)).copied().unwrap_or(0.0)
 }

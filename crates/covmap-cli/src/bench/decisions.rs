@@ -239,7 +239,5 @@ pub(super) fn office(
 }
 
 fn count(number: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "at most some million")]
-    let number = number as f64;
-    number
+    number as f64
 }

@@ -11,7 +11,7 @@ use nalgebra::{Isometry2, Point2, Vector2};
 
 const COLUMNS: u32 = 50;
 const ROWS: u32 = 25;
-/// The ring is fired at so many places in a round.
+/// The number of places in a round at which the ring is fired.
 const PLACES: u32 = 40;
 
 /// 1250 turned boxes of four sides each on a lattice of 1 m.

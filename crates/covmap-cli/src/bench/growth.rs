@@ -40,7 +40,6 @@ impl Point {
     /// What it takes about, in whatever unit: cells of the map, bins, and for each view-point
     /// cells in range and outcomes.
     fn work(self) -> f64 {
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let bins = self.bins as f64;
         f64::from(self.side).powi(2) * bins * self.range.powi(3)
     }
@@ -99,7 +98,6 @@ pub(super) fn run(
     write_table(&output, &[&sides[..], &bins, &ranges].concat())?;
     let panels = [
         row(&sides, &ChartAxis::logarithmic("cells of the map"), |p| f64::from(p.side).powi(2)),
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         row(&bins, &ChartAxis::new("bins"), |p| p.bins as f64),
         row(&ranges, &ChartAxis::new("usable range [m]"), |p| p.range),
     ];
@@ -141,7 +139,7 @@ fn measure(bench: &Measuring<'_>, points: impl Iterator<Item = Point>) -> Result
 fn parse(point: Point, text: &str) -> Option<Measured> {
     let numbers: Vec<f64> = text.split(',').filter_map(|n| n.parse().ok()).collect();
     let &[candidates, cold, next, map, all] = numbers.as_slice() else { return None };
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "a count")]
+    #[allow(clippy::cast_possible_truncation, reason = "a count")]
     Some(Measured { point, candidates: candidates as usize, cold, next, map, all })
 }
 
@@ -162,7 +160,6 @@ pub(super) fn point(config: &Config, point: Point) -> Result<()> {
     let candidates = decision.candidates;
     let next = median(&decide(&mut situation, decision, NEXT)?.seconds);
     let all = resident() - before;
-    #[allow(clippy::cast_precision_loss, reason = "some million")]
     let map = mission.grid.len() as f64 * (4.0 * config.model.bins as f64 + 6.0);
     say::line(format!("{candidates},{cold},{next},{map},{all}"));
     Ok(())
@@ -173,7 +170,6 @@ fn adapted(config: &Config, point: Point) -> Config {
     let mut config = config.clone();
     let model = &mut config.model;
     (model.bins, model.usable_range) = (point.bins, point.range);
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let half_bin = 0.5 / (point.bins - 1) as f64;
     match &mut model.update {
         Update::Product(product) => {

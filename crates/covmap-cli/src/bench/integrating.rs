@@ -32,7 +32,6 @@ pub(super) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
             run.scans.iter().for_each(|scan| literal.integrate(&model, scan));
         };
         let (ours, other) = race(extent.rounds, ours, other);
-        #[allow(clippy::cast_precision_loss, reason = "some hundred scans")]
         let scans = run.scans.len() as f64;
         table.row(Row {
             what: format!("integrate a scan of 24 beams by Eq. (9), {bins} bins, with entropies"),

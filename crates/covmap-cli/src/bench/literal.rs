@@ -17,7 +17,6 @@ pub(super) struct LiteralMap {
 
 impl LiteralMap {
     pub(super) fn new(grid: Grid, bins: usize) -> Self {
-        #[allow(clippy::cast_precision_loss, reason = "some ten bins")]
         let n = bins as f64;
         let (posterior, entropy) = (vec![1.0 / n; grid.len() * bins], vec![n.ln(); grid.len()]);
         Self { grid, bins, posterior, entropy }

@@ -19,7 +19,7 @@ fn scenario() -> Result<Scenario> {
     Ok(parse_ron(Path::new("scenarios/office.ron"), OFFICE)?)
 }
 
-/// Offices side by side, without walls between them, cut off so that their grid has so many
+/// Offices side by side, without walls between them, cut off so that their grid has a number of
 /// cells of .1 m along a side.
 pub(super) fn offices(cells: u32, outside: Surface) -> Result<World> {
     let tile = scenario()?;

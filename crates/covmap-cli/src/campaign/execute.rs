@@ -13,7 +13,7 @@ use indexmap::IndexMap;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-/// The share of explored cells is looked at again after so many metres …
+/// The share of explored cells is looked at again after this distance \[m\] …
 const LOOK_AFTER: f64 = 0.5;
 /// … or after this share of the path so far, whichever is more.
 const LOOK_AFTER_SHARE: f64 = 0.01;

@@ -65,10 +65,10 @@ pub(crate) struct Setting {
     pub(crate) name: String,
     /// The configuration.
     pub(crate) config: PathBuf,
-    /// Measure also on the way, every so many metres.
+    /// Measure also on the way, at this distance \[m\].
     #[serde(default)]
     pub(crate) while_driving: Option<f64>,
-    /// End after so many scans.
+    /// End after this number of scans.
     #[serde(default)]
     pub(crate) max_scans: Option<usize>,
     /// Parameters that differ from the file, by their paths, such as `planner.scan_spacing`;
@@ -88,7 +88,7 @@ pub(crate) enum Starts {
     Given,
     /// At these poses: metres, metres, degrees.
     Poses(Vec<(f64, f64, f64)>),
-    /// At so many roomy places, drawn by a seed.
+    /// At a number of roomy places, drawn by a seed.
     Drawn {
         /// How many.
         count: usize,
@@ -97,7 +97,7 @@ pub(crate) enum Starts {
     },
 }
 
-/// So many seeds, one after the other.
+/// A number of seeds, one after the other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Seeds {

@@ -27,7 +27,7 @@ pub(crate) fn millimetres(point: Point2<f64>) -> (f64, f64) {
     (rounded(point.x, 1e3), rounded(point.y, 1e3))
 }
 
-/// A number to so many parts of one.
+/// A number, rounded to this many parts of one.
 pub(crate) fn rounded(value: f64, parts: f64) -> f64 {
     (value * parts).round() / parts
 }

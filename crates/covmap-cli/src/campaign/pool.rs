@@ -18,7 +18,7 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 /// How a campaign is run.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Options<'a> {
-    /// So many runs at the same time.
+    /// The number of runs at the same time.
     pub(crate) jobs: NonZeroUsize,
     /// Which runs.
     pub(crate) shard: Shard,
@@ -31,11 +31,11 @@ pub(crate) struct Options<'a> {
 /// What is told while a campaign goes on.
 #[derive(Debug)]
 pub(crate) enum Step {
-    /// So many runs of so many are recorded already.
+    /// How many runs, of how many, are recorded already.
     Begin { recorded: usize, of: usize },
     /// Something to know.
     Note(String),
-    /// A scan was made, so many metres after the one before in its run.
+    /// A scan was made, this far after the one before in its run \[m\].
     Scan { metres: f64 },
     /// A run is done and recorded.
     Done,

@@ -19,7 +19,7 @@ const RUNS: &str = "runs";
 const TIMINGS: &str = "timings";
 const SUMMARY: &str = "summary";
 
-/// Writes the tables `runs`, `timings` and `summary` of the runs that are recorded of so many, and
+/// Writes the tables `runs`, `timings` and `summary` of the runs that are recorded, out of how many, and
 /// removes those of another number.
 ///
 /// The first and the last are a function of the campaign and the program; the times are not.

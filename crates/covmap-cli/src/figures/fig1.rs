@@ -5,7 +5,7 @@ use super::partial_cells::{COVERAGE, MEASUREMENTS, PartialCell, spread};
 use anyhow::Result;
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 
-/// Error bars stand at every so many measurements.
+/// Error bars stand at multiples of this number of measurements.
 const BARS: usize = 10;
 
 /// Draws the figure, and writes the numbers behind it.
@@ -83,7 +83,6 @@ fn last() -> f64 {
     count(MEASUREMENTS)
 }
 
-#[allow(clippy::cast_precision_loss, reason = "some hundred measurements")]
 fn count(k: usize) -> f64 {
     k as f64
 }

@@ -77,7 +77,6 @@ fn chart(
     (metric, title, axis): (&str, &str, &str),
 ) -> Chart {
     let names = strategies.iter().map(|strategy| strategy.to_string().replace('(', "\n("));
-    #[allow(clippy::cast_precision_loss, reason = "a few strategies")]
     let series = |(index, (name, runs)): (usize, &(&str, &Runs))| {
         // Beside each other.
         let aside = 0.16 * (index as f64 - 0.5 * (columns.len() as f64 - 1.0));
@@ -152,7 +151,7 @@ mod tests {
     use crate::paper::runs::{Row, made_up};
 
     /// The rows of `figure7.csv` and the drawing of some runs of CL from different starts, of
-    /// which so many were cut short.
+    /// which some were cut short.
     fn drawn(scans: &[f64], cut_short: usize) -> (Vec<Vec<String>>, String) {
         let values: Vec<[(&str, f64); 2]> =
             scans.iter().map(|n| [("scans", *n), ("path_length_m", 1.0)]).collect();

@@ -13,7 +13,7 @@ use std::path::Path;
 
 /// So often the cell is measured.
 pub(crate) const MEASUREMENTS: usize = 100;
-/// The posterior of Fig. 2 is that after so many measurements.
+/// The posterior of Fig. 2 is that after this number of measurements.
 pub(crate) const FIG_2: usize = 30;
 /// How much of the cell is covered.
 pub(crate) const COVERAGE: f64 = 0.2;
@@ -99,7 +99,6 @@ pub(crate) fn spread(values: &[f64]) -> (f64, f64, f64) {
     let mut values: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     values.sort_by(f64::total_cmp);
     let Some(last) = values.len().checked_sub(1) else { return (f64::NAN, f64::NAN, f64::NAN) };
-    #[allow(clippy::cast_precision_loss, reason = "some hundred values")]
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     (mean, values[last * 5 / 100], values[last - last * 5 / 100])
 }

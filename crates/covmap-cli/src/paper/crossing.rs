@@ -39,7 +39,6 @@ impl Crossing {
 /// The curve is the monotone one that is nearest to the counting runs (isotonic regression of
 /// the share on the path).
 pub(crate) fn crossing(counting: &[Point], cl: &[Point]) -> Option<Crossing> {
-    #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
     let mean = cl.iter().map(|point| point.path).sum::<f64>() / cl.len() as f64;
     let curve = curve(counting);
     let (first, last) = (curve.first()?, curve.last()?);
@@ -69,7 +68,6 @@ pub(crate) fn curve(points: &[Point]) -> Vec<Point> {
     for point in &points {
         pools.push((point.share, 1));
         while let [.., (a, m), (b, n)] = pools[..] {
-            #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
             if a / m as f64 <= b / n as f64 {
                 break;
             }
@@ -77,7 +75,6 @@ pub(crate) fn curve(points: &[Point]) -> Vec<Point> {
             pools.push((a + b, m + n));
         }
     }
-    #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
     let shares = pools.iter().flat_map(|(sum, n)| std::iter::repeat_n(sum / *n as f64, *n));
     points.iter().zip(shares).map(|(point, share)| Point { share, ..*point }).collect()
 }

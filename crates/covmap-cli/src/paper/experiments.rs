@@ -9,7 +9,7 @@ use covmap_plan::Strategy;
 use std::fmt::Write;
 use std::path::Path;
 
-/// A quick run ends after so many scans.
+/// A quick run ends after this number of scans.
 pub(super) const QUICK_SCANS: usize = 1000;
 
 /// The two configurations: the first decides the verdicts.

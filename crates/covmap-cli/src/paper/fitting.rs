@@ -84,7 +84,6 @@ impl Fitting {
     /// The mean difference over held-out worlds, with its error by resampling scenarios.
     pub(crate) fn mean_difference(&self) -> Option<Estimate> {
         bootstrap(&self.by_scenario, RESAMPLES, SEED, |drawn| {
-            #[allow(clippy::cast_precision_loss, reason = "a few worlds")]
             let n = drawn.len() as f64;
             (!drawn.is_empty()).then(|| drawn.iter().copied().sum::<f64>() / n)
         })

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// A run is compared up to so many scans, if it does not end before.
+/// A run is compared up to this number of scans, if it does not end before.
 const SCANS: usize = 2000;
 const QUICK_SCANS: usize = 400;
 /// Cells of this side \[m\], so that it is quick.

@@ -61,7 +61,6 @@ fn unit(config: &Config, turn: f64, away: f64, seed: u64) -> Result<Vec<f64>> {
     let mut robot = SimulatedRobot::new(&world, config, seed)?;
     let mut places = Vec::new();
     for index in 0..SCANS {
-        #[allow(clippy::cast_precision_loss, reason = "a few scans")]
         let along = LENGTH * (index as f64 / (SCANS - 1) as f64 - 0.5);
         // Below the wall, in its own frame.
         let turned = Isometry2::new(nalgebra::Vector2::new(4.0, 4.0), turn);

@@ -12,7 +12,6 @@ use covmap_statistics::{Estimate, kendall_tau};
 pub(crate) fn mean_tau(ranking: &[f64], units: &Units) -> Option<Estimate> {
     let taus = units.each(|numbers| kendall_tau(ranking, numbers).unwrap_or(0.0));
     let mean = taus.mean(0)?;
-    #[allow(clippy::cast_precision_loss, reason = "a few strategies and starts")]
     let (n, groups) = (ranking.len() as f64, mean.groups as f64);
     let step = 4.0 / (n * (n - 1.0));
     let least = step / 12f64.sqrt() / groups.sqrt();

@@ -175,7 +175,6 @@ impl Units {
 
 /// The mean over units of what is at a place.
 pub(crate) fn mean(units: &[&Vec<f64>], place: usize) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
     let n = units.len() as f64;
     units.iter().map(|unit| unit[place]).sum::<f64>() / n
 }
@@ -204,7 +203,6 @@ pub(crate) fn made_up(rows: &[Row<'_>]) -> Runs {
 pub(crate) fn series(strategies: &[(&str, &[(&str, f64)])]) -> Runs {
     const OWN: [[f64; 4]; 3] =
         [[1.0, 1.0, -1.0, -1.0], [1.0, -1.0, 1.0, -1.0], [1.0, -1.0, -1.0, 1.0]];
-    #[allow(clippy::cast_precision_loss, reason = "small numbers")]
     let spread = |i: usize, start: usize, seed: u64| {
         let own = 0.001 * (1.0 + i as f64) * OWN[i % 3][start];
         1.0 + own + 0.01 * ((start as f64) - 1.5) + 0.004 * (seed as f64 - 1.5)

@@ -58,7 +58,7 @@ impl<'a> Session<'a> {
         &self.out
     }
 
-    /// So many runs at the same time.
+    /// The number of runs at the same time.
     pub(crate) fn jobs(&self) -> NonZeroUsize {
         self.jobs
     }

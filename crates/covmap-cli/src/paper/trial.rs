@@ -166,7 +166,6 @@ impl Finding {
     /// The p-value that it does not: one test is enough, which costs as many chances as there
     /// are tests.
     fn p_fails(&self) -> f64 {
-        #[allow(clippy::cast_precision_loss, reason = "a few tests")]
         let chances = self.trials.iter().filter(|trial| !trial.exact).count().max(1) as f64;
         let p = |trial: &Trial| if trial.exact { trial.p_fails } else { chances * trial.p_fails };
         self.trials.iter().map(p).fold(1.0, f64::min)

@@ -321,7 +321,6 @@ fn the_map_of_a_run_is_a_world_whose_unknown_cells_are_solid() {
     let free = written(&shell).2[0];
     let again = "explore run/map.yaml --resolution 0.2 --max-scans 3 --out again";
     let typed = shell.expect(again, 3);
-    #[allow(clippy::cast_precision_loss, reason = "some hundred cells")]
     let area = format!("run/map.yaml: {:.2} m² free", 0.04 * free as f64);
     assert!(typed.out.starts_with(&area), "{area}: {typed:?}");
 }

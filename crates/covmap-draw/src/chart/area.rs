@@ -44,7 +44,6 @@ pub(super) fn reach(ticks: &[Tick]) -> f32 {
 const LINE: f32 = TICK_SIZE * 1.25;
 
 /// From the x axis to the lower end of its labels.
-#[allow(clippy::cast_precision_loss, reason = "a few lines")]
 pub(super) fn reach_below(ticks: &[Tick]) -> f32 {
     let lines = ticks.iter().map(|tick| tick.label.lines().count()).max().unwrap_or(1).max(1);
     TICK + TICK_GAP + TICK_SIZE + (lines - 1) as f32 * LINE

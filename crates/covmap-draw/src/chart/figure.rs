@@ -25,7 +25,6 @@ fn sizes(panels: usize, columns: usize) -> (f32, f32, (f32, f32)) {
 
 impl Figure {
     /// Finds a place for everything.
-    #[allow(clippy::cast_precision_loss, reason = "a few panels")]
     pub(super) fn lay_out(&self) -> Scene {
         let columns = self.columns.clamp(1, MOST_COLUMNS).min(self.panels.len().max(1));
         let (panel_width, frame_height, text) = sizes(self.panels.len(), columns);

@@ -161,7 +161,6 @@ impl ChartAxis {
 
     /// An axis of things that have names: the values 1, 2, 3, …
     pub fn named(label: impl Into<String>, names: Vec<String>) -> Self {
-        #[allow(clippy::cast_precision_loss, reason = "a few names")]
         let to = names.len() as f64 + 0.5;
         Self { from: Some(0.5), to: Some(to), names, ..Self::new(label) }
     }

@@ -13,7 +13,7 @@ const LONGEST: f32 = 8000.0;
 
 impl Scene {
     /// The drawing as an image.
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "≤ 8000")]
+    #[allow(clippy::cast_possible_truncation, reason = "≤ 8000")]
     pub(super) fn paint(&self) -> Canvas {
         let scale = SCALE.min(LONGEST / self.width.max(self.height).max(1.0));
         let side = |length: f32| (length * scale).ceil() as u32;

@@ -88,7 +88,6 @@ impl Panel {
         if axis.names.is_empty() {
             return x.ticks(length, room_across);
         }
-        #[allow(clippy::cast_precision_loss, reason = "a few names")]
         let tick = |(index, name): (usize, &String)| {
             let share = x.share(index as f64 + 1.0).filter(|share| is_inside([*share, 0.0]))?;
             Some(Tick { share, label: name.clone() })

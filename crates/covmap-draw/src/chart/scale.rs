@@ -145,7 +145,6 @@ impl Scale {
         }
     }
 
-    #[allow(clippy::cast_precision_loss, reason = "a few ticks")]
     fn multiples(&self, step: f64) -> impl Iterator<Item = Tick> {
         let first = libm::ceil(self.from / step - 1e-6);
         let size = self.from.abs().max(self.to.abs());
@@ -181,7 +180,7 @@ impl Scale {
         #[allow(clippy::cast_possible_truncation, reason = "the exponent of an f64")]
         let (first, last) =
             (libm::floor(libm::log10(self.from)) as i32, libm::ceil(libm::log10(self.to)) as i32);
-        #[allow(clippy::cast_possible_wrap, clippy::cast_possible_truncation, reason = "≤ 200")]
+        #[allow(clippy::cast_possible_truncation, reason = "≤ 200")]
         let stride = stride as i32;
         (first..=last)
             .filter(|exponent| exponent % stride == 0)
@@ -227,7 +226,7 @@ fn number(value: f64, step: f64, size: f64) -> String {
     }
     let digits =
         libm::floor(libm::log10(value.abs()) + 1e-9) - libm::floor(libm::log10(step) + 1e-9);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 12")]
+    #[allow(clippy::cast_possible_truncation, reason = "0 to 12")]
     let digits = digits.clamp(0.0, 12.0) as usize;
     let text = format!("{value:.digits$e}");
     let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));

@@ -75,7 +75,7 @@ impl Scene {
     }
 }
 
-/// A text in lines of at most a width, and at most so many of them; what does not fit is
+/// A text in lines of at most a width, and at most a number of them; what does not fit is
 /// cut off with an ellipsis.
 pub(super) fn wrap(text: &str, size: f32, width: f32, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();

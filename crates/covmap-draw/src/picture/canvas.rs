@@ -20,7 +20,7 @@ pub(crate) struct Canvas(Pixmap);
 fn paint(color: Rgb, opacity: f32) -> Paint<'static> {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
     let alpha = (opacity.clamp(0.0, 1.0) * 255.0).round();
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in 0..=255")]
+    #[allow(clippy::cast_possible_truncation, reason = "in 0..=255")]
     paint.set_color_rgba8(color.0, color.1, color.2, alpha as u8);
     paint
 }

@@ -32,11 +32,7 @@ impl Rgb {
         let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };
         let mix = |a: u8, b: u8| {
             let value = f64::from(a) + t * (f64::from(b) - f64::from(a));
-            #[allow(
-                clippy::cast_possible_truncation,
-                clippy::cast_sign_loss,
-                reason = "between two bytes"
-            )]
+            #[allow(clippy::cast_possible_truncation, reason = "between two bytes")]
             let byte = value.round() as u8;
             byte
         };
@@ -101,15 +97,12 @@ impl ColorMap {
         if t.is_nan() {
             return Rgb::UNKNOWN;
         }
-        #[allow(clippy::cast_precision_loss, reason = "a few anchors")]
         let along = t.clamp(0.0, 1.0) * (anchors.len() - 1) as f64;
         #[allow(
             clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
             reason = "at least 0, at most the number of anchors"
         )]
         let from = (along as usize).min(anchors.len() - 2);
-        #[allow(clippy::cast_precision_loss, reason = "a few anchors")]
         let t = along - from as f64;
         anchors[from].mix(anchors[from + 1], t)
     }

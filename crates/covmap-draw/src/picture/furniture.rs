@@ -36,7 +36,7 @@ pub(crate) fn round_down(most: f64) -> f64 {
 /// A number as short as it is exact to its steps.
 pub(crate) fn short(value: f64, step: f64) -> String {
     let decimals = (-libm::floor(libm::log10(step) + 1e-9)).clamp(0.0, 9.0);
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "0 to 9")]
+    #[allow(clippy::cast_possible_truncation, reason = "0 to 9")]
     let text = format!("{:.*}", decimals as usize, value);
     match text.strip_prefix('-') {
         Some(digits) if digits.bytes().all(|b| matches!(b, b'0' | b'.')) => digits.to_string(),
@@ -132,12 +132,7 @@ fn scale_bar(canvas: &mut Canvas, [x, y]: [f32; 2], length: f32, metres: f64) {
 fn color_bar(canvas: &mut Canvas, [x, y]: [f32; 2], bar: &ColorBar, width: f32) {
     let count = bar.colors.len();
     let width = width.round();
-    #[allow(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "a few hundred pixels"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "a few hundred pixels")]
     for column in 0..width as usize {
         let index = column * (count - 1) / (width as usize - 1).max(1);
         canvas.rectangle(x + column as f32, y, 1.0, SWATCH, bar.colors[index]);

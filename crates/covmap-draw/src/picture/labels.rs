@@ -18,7 +18,6 @@ pub(super) fn place_labels<'a>(
     width: u32,
     height: u32,
 ) -> Vec<(&'a str, [f32; 2])> {
-    #[allow(clippy::cast_precision_loss, reason = "a few thousand pixels")]
     let (width, height) = (width as f32, height as f32);
     let is_visible = |[x, y]: &[f32; 2]| (0.0..=width).contains(x) && (0.0..=height).contains(y);
     let visible: Vec<_> = labels.iter().filter(|(_, at)| is_visible(at)).copied().collect();

@@ -15,13 +15,11 @@ const LABEL_SIZE: f32 = 17.0;
 
 impl Picture {
     /// The pixels of a metre.
-    #[allow(clippy::cast_precision_loss, reason = "a grid has at most 2e7 cells")]
     pub(super) fn scale(&self) -> f64 {
         self.pixels_per_cell as f64 / (self.cells_per_pixel as f64 * self.grid.resolution())
     }
 
     /// The pixel of the map at which a point of the world lies.
-    #[allow(clippy::cast_precision_loss, reason = "a grid has at most 2e7 cells")]
     #[allow(clippy::cast_possible_truncation, reason = "pixels")]
     fn to_pixel(&self, point: Point2<f64>) -> [f32; 2] {
         let from = point - self.grid.lower_left();
@@ -30,13 +28,7 @@ impl Picture {
     }
 
     /// The whole picture.
-    #[allow(
-        clippy::cast_precision_loss,
-        clippy::cast_possible_truncation,
-        clippy::cast_possible_wrap,
-        clippy::cast_sign_loss,
-        reason = "a few thousand pixels"
-    )]
+    #[allow(clippy::cast_possible_truncation, reason = "a few thousand pixels")]
     pub(super) fn render(&self) -> Canvas {
         let map = self.render_map();
         let inner = (map.width() as usize).max(LEAST_WIDTH) as f32;

@@ -5,7 +5,7 @@ use covmap_statistics::resample;
 use rayon::prelude::*;
 
 /// The block of every cell of an example's truth, in its order, from 0 to below `blocks`:
-/// the trajectory is cut into so many pieces of as many consecutive scans each, and a cell
+/// the trajectory is cut into `blocks` pieces of equally many consecutive scans, and a cell
 /// belongs to the piece that has the pose nearest to its centre; of equally near ones, to the
 /// first. Without scans all belong to block 0.
 pub fn trajectory_blocks(example: &Example, blocks: usize) -> Vec<usize> {

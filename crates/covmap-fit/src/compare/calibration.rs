@@ -50,9 +50,8 @@ impl CalibrationTable {
 }
 
 fn level(posterior: &[f64]) -> usize {
-    #[allow(clippy::cast_precision_loss, reason = "twenty")]
     let place = mean(posterior) * CALIBRATION_LEVELS as f64;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "at most 20")]
+    #[allow(clippy::cast_possible_truncation, reason = "at most 20")]
     let level = place as usize;
     level.min(CALIBRATION_LEVELS - 1)
 }
@@ -66,7 +65,6 @@ mod tests {
     /// Truths from a ramp; posteriors that are far too sure of what they half know.
     fn overconfident() -> Vec<(Vec<f64>, f64)> {
         let cell = |i: usize| {
-            #[allow(clippy::cast_precision_loss, reason = "small")]
             let truth = (i % 101) as f64 / 100.0;
             let mut p = vec![0.0; 11];
             p[if (i * 7) % 10 < 7 { usize::from(truth > 0.5) * 10 } else { (i / 101) % 11 }] = 1.0;
@@ -77,7 +75,6 @@ mod tests {
 
     /// The distance of the transform's distribution from a uniform one.
     fn distance(cells: &[(Vec<f64>, f64)], of: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
-        #[allow(clippy::cast_precision_loss, reason = "small")]
         let fraction = |i: usize, n: usize| (i as f64 + 0.5) / n as f64;
         let n = cells.len();
         let pit = cells.iter().enumerate().map(|(i, (p, truth))| {

@@ -89,7 +89,6 @@ impl BetaCounting {
 /// J is ∫ F from 0 to x, by parts and with the recurrence of the incomplete beta function in
 /// a \[DLMF 8.17.20\].
 pub(crate) fn beta_posterior(a: f64, b: f64, bins: usize) -> Vec<f64> {
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let width = 1.0 / (bins - 1) as f64;
     let m = a / (a + b);
     let integral = |k: usize| {

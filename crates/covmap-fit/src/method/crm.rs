@@ -222,7 +222,7 @@ impl Rings {
         let reach = model.reach(outcome);
         model.footprint().for_each_cell(grid, &scan.pose, beam, reach, |covered| {
             let place = (covered.cell_distance / model.resolution()).round();
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "in range")]
+            #[allow(clippy::cast_possible_truncation, reason = "in range")]
             let ring = place as usize;
             self.cells.push(RingCell { ring, cell: covered.cell, share: 0.0, stops: 0.0 });
         });
@@ -232,9 +232,7 @@ impl Rings {
 
 /// The distance of a ring \[m\].
 fn ring_distance(ring: usize, resolution: f64) -> f64 {
-    #[allow(clippy::cast_precision_loss, reason = "at most some ten thousand rings")]
-    let distance = ring as f64 * resolution;
-    distance
+    ring as f64 * resolution
 }
 
 #[cfg(test)]

@@ -39,7 +39,7 @@ pub(super) struct BeamState {
     pub(super) bound: u16,
     /// There is a reason to measure in sight.
     pub(super) has_reason: u16,
-    /// The values depend on the first so many cells of the beam.
+    /// The number of cells of the beam, the first ones, on which the values depend.
     pub(super) horizon: u16,
 }
 
@@ -187,7 +187,6 @@ impl Onlookers {
                     let first = (low + run.first).div_euclid(lanes).max(0);
                     let last = (high + run.last).div_euclid(lanes).min(signed(per_row) - 1);
                     for group in first..=last {
-                        #[allow(clippy::cast_sign_loss, reason = "inside of the grid")]
                         let group = y as usize * per_row + group as usize;
                         tell(change, group, run.beam, run.rank);
                     }

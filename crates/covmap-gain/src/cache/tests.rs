@@ -1,5 +1,4 @@
 //! What is kept is what a fresh cache computes, and what bounds bound.
-#![allow(clippy::cast_precision_loss, reason = "tests count few")]
 
 use super::*;
 use covmap::Raster;

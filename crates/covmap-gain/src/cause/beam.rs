@@ -25,7 +25,7 @@ pub(super) struct CauseCell {
 /// How an echo from one range divides the beam's cells, which are in order of their distance.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct End {
-    /// The first so many cells are in front of the end,
+    /// The number of cells in front of the end, the first ones,
     pub(super) front: usize,
     /// up to here it may lie in them,
     pub(super) ended: usize,
@@ -77,7 +77,7 @@ pub(super) struct CauseBeam {
     pub(super) near: Vec<NearEnd>,
     /// For each end, by their bearing.
     pub(super) surfaces: Vec<Surface>,
-    /// The first so many cells are passed if there is no echo.
+    /// The number of cells, the first ones, that are passed if there is no echo.
     pub(super) no_echo: usize,
     /// b.
     pub(super) behind_weight: f32,

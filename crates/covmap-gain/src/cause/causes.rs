@@ -15,7 +15,7 @@ pub(super) struct GroupCauses<'a> {
     parameters: &'a CauseParameters,
     /// How much of a reading would be new.
     novelty: &'a Lanes,
-    /// So many cells are passed.
+    /// The number of cells that are passed.
     passed: usize,
     /// v_m, and whether any is below 1.
     clear: [Lanes; MOST],

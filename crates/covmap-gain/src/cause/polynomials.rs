@@ -211,7 +211,7 @@ fn inverse(nodes: &[f64], first: usize) -> Vec<Vec<f64>> {
     (0..n).map(|q| inverse.row(q).iter().copied().collect()).collect()
 }
 
-/// The largest error of an interpolation by so many nodes, in units of the largest gain of its probe.
+/// The largest error of an interpolation by a number of nodes, in units of the largest gain of its probe.
 fn error(degree: usize, first: usize, gains: impl Fn(f64) -> Vec<f64>) -> f64 {
     let nodes = nodes(degree);
     let (inverse, at_nodes) =

@@ -37,7 +37,7 @@ use swept::{SumRing, SweptRow};
 /// reports have few beams.
 const SHARED: usize = 160;
 
-/// So many readings are kept for every cell, if the estimate of memory is right.
+/// The number of readings that are kept for every cell, if the estimate of memory is right.
 const KEPT_READINGS: f64 = 40.0;
 
 /// Planes of more numbers than this, 16 MB, are not kept: decisions that need them are slow anyway.

@@ -101,7 +101,6 @@ struct Known {
 
 impl Known {
     /// The grid of what is known.
-    #[allow(clippy::cast_precision_loss, reason = "an image has at most 2^26 pixels")]
     fn grid(&self, description: &Description) -> Result<Grid, MapServerError> {
         let Self { columns, rows, image_size, .. } = self;
         if rows.is_empty() {
@@ -151,7 +150,6 @@ impl Source<'_> {
                 grey += usize::from(!cell.is_solid() && *is_unknown_grey);
             }
         })?;
-        #[allow(clippy::cast_precision_loss, reason = "an image has at most 2^26 pixels")]
         let of = |count: usize| count as f64 * area;
         let areas = MapAreas {
             free: of(free),

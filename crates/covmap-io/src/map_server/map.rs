@@ -92,11 +92,7 @@ impl MapServerMap {
 }
 
 /// The cell whose lower corner is the upper corner of a grid.
-#[allow(
-    clippy::cast_possible_truncation,
-    clippy::cast_possible_wrap,
-    reason = "a grid has at most 2e7 cells"
-)]
+#[allow(clippy::cast_possible_truncation, reason = "a grid has at most 2e7 cells")]
 fn beyond(grid: &Grid) -> Cell {
     Cell::new(grid.width() as i32, grid.height() as i32)
 }

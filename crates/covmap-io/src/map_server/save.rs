@@ -41,7 +41,6 @@ impl MapThresholds {
     /// `entropy`, but at most ½ ln n. There a posterior is as wide as a uniform one over √n
     /// bins: a cell above that rests on next to nothing, whatever `entropy` says.
     pub fn largest_entropy(&self, bins: usize) -> f64 {
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let next_to_nothing = 0.5 * libm::log(bins as f64);
         self.entropy.min(next_to_nothing)
     }
@@ -49,7 +48,6 @@ impl MapThresholds {
     /// The largest entropy of a cell that is occupied \[nats\]: `occupied_entropy`, but at most
     /// .95 ln n, for a posterior that is all but uniform says nothing.
     pub fn largest_occupied_entropy(&self, bins: usize) -> f64 {
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let all_but_uniform = 0.95 * libm::log(bins as f64);
         self.occupied_entropy.min(all_but_uniform)
     }

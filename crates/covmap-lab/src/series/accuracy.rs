@@ -69,7 +69,6 @@ impl Accuracy {
     pub fn new(truth: &Truth, mission: &Mission, map: &CoverageMap, scored: &[Cell]) -> Self {
         let compared = truth.compared_cells(mission.config.robot.radius);
         let score = truth.score(map, &compared);
-        #[allow(clippy::cast_precision_loss, reason = "at most 2e7 cells")]
         let compared_cells = compared.len() as f64;
         Self {
             scored: Errors::new(truth, map, scored),

@@ -27,12 +27,7 @@ pub fn drawn_starts(
     }
     let mut random = stream(seed, "starts", 0);
     let pose = |_| {
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            clippy::cast_precision_loss,
-            reason = "a share of the number of cells"
-        )]
+        #[allow(clippy::cast_possible_truncation, reason = "a share of the number of cells")]
         let index = (uniform(&mut random) * cells.len() as f64) as usize;
         let cell = cells.swap_remove(index.min(cells.len() - 1));
         Isometry2::new(grid.center(cell).coords, TAU * uniform(&mut random))

@@ -35,7 +35,7 @@ impl CauseTerms {
         self.passed.push(single(shares.passed));
     }
 
-    /// Adds cells of which nothing is said, up to so many in all.
+    /// Adds cells of which nothing is said, until there are `count` in all.
     pub(crate) fn fill(&mut self, count: usize) {
         for (terms, value) in [
             (&mut self.ended, 0.0),
@@ -53,7 +53,6 @@ impl CauseTerms {
     pub(crate) fn evidence(&self, block: usize, out: &mut [[Lanes; TOGETHER]]) {
         let block = |terms: &[f32]| terms.as_chunks::<LANES>().0[block];
         let (mut ended, passed) = (block(&self.ended), block(&self.passed));
-        #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
         let each = 1.0 / self.bins as f32;
         let mut even = [0.0; LANES];
         for lane in 0..LANES {

@@ -36,7 +36,7 @@ impl Terms {
         }
     }
 
-    /// Adds cells of which it does not matter what is said, up to so many in all.
+    /// Adds cells of which it does not matter what is said, until there are `count` in all.
     pub(crate) fn fill(&mut self, count: usize) {
         [&mut self.mu, &mut self.sigma, &mut self.gamma]
             .into_iter()

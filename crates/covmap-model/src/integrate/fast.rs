@@ -295,7 +295,6 @@ mod tests {
                 gamma,
                 (behind, range, no_echo, tempering, footprint),
             )| {
-                #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
                 let half_bin = 0.5 / (bins - 1) as f64;
                 sigma_out.base = sigma_out.base.max(half_bin);
                 let parameters = ModelParameters {

@@ -55,7 +55,6 @@ pub(super) fn is_sum(label: Label, before: Label, step: Label) -> bool {
 
 /// The length of a label in sides of cells, correctly rounded; `None` where no way leads.
 pub(super) fn in_cells(label: Label) -> Option<f64> {
-    #[allow(clippy::cast_precision_loss, reason = "below 2^53 for the largest grid: exact")]
     let in_cells = |label: Label| length(label) as f64 / P as f64;
     (label != UNREACHED).then(|| in_cells(label))
 }

@@ -233,7 +233,6 @@ impl<'a> Echoes<'a> {
         let arc = self.fan().map(|angle| self.origin + self.toward(angle) * range);
         let (low, high) =
             arc.fold((self.origin, self.origin), |(low, high), p| (low.inf(&p), high.sup(&p)));
-        #[allow(clippy::cast_precision_loss, reason = "at most 1001 rays")]
         let step = self.half_angle / (self.physics.cone_rays / 2).max(1) as f64;
         let bulge = Vector2::repeat(range * (1.0 - libm::cos(0.5 * step)));
         (low - bulge, high + bulge)

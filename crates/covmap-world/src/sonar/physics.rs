@@ -127,7 +127,6 @@ impl SonarPhysics {
     /// # Errors
     /// If one is not finite or out of its range.
     pub fn validate(&self) -> Result<(), PhysicsError> {
-        #[allow(clippy::cast_precision_loss, reason = "refused long before it is inexact")]
         let [rays, most_rays] = [self.cone_rays, MOST_RAYS].map(|rays| rays as f64);
         // A wall never answers along itself: 89.99°.
         let grazing = FRAC_PI_2 - 1e-4;

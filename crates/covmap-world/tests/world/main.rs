@@ -1,7 +1,6 @@
 //! The truth, as its users see it.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 #![allow(clippy::float_cmp, reason = "tests compare exact values")]
-#![allow(clippy::cast_precision_loss, reason = "small counts")]
 
 mod build;
 mod coverage;

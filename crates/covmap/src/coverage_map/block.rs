@@ -18,7 +18,7 @@ impl EvidenceBlock {
     /// A lane without a cell.
     pub const NO_CELL: u32 = u32::MAX;
 
-    /// A block for maps of so many bins, at most [`MAX_BINS`].
+    /// A block for maps with a number of bins, at most [`MAX_BINS`].
     pub fn new(bins: usize) -> Self {
         let bins = bins.min(MAX_BINS);
         let ones = [1.0; LANES];
@@ -183,11 +183,7 @@ impl CoverageMap {
             if changed_lanes[lane] || self.evidence[index] == Evidence::Unknown {
                 self.evidence[index] = Evidence::Measured;
                 let before = std::mem::replace(&mut self.entropy[index], entropy[lane]);
-                #[allow(
-                    clippy::cast_possible_truncation,
-                    clippy::cast_sign_loss,
-                    reason = "at most 64 bins"
-                )]
+                #[allow(clippy::cast_possible_truncation, reason = "at most 64 bins")]
                 (self.mode_bin[index] = mode[lane] as u8);
                 changed(lane, f64::from(before), f64::from(entropy[lane]));
             }

@@ -13,7 +13,6 @@ const RING: usize = 6;
 /// Both evaluators side by side, each with what its interpolation is off.
 pub(super) fn figure(by_cause: &Config, of_product: &Moment, quick: bool) -> Result<Figure> {
     let bins = of_product.map.bins();
-    #[allow(clippy::cast_precision_loss, reason = "at most 64 bins")]
     let uniform = vec![1.0 / bins as f64; bins];
     let ring = if quick { RING / 2 } else { RING };
     let over = RangeInterpolation::of(&of_product.model, 0.0, ring, &uniform, 241)

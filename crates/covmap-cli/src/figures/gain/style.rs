@@ -20,7 +20,6 @@ pub(super) const TEXT: f64 = 13.0;
 pub(super) const SMALL: f64 = 11.5;
 
 /// A count.
-#[allow(clippy::cast_precision_loss, reason = "counts are small")]
 pub(super) fn count(n: usize) -> f64 {
     n as f64
 }

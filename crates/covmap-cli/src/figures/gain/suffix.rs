@@ -21,7 +21,7 @@ struct Row {
     probability: f64,
     /// L(k).
     any: f64,
-    /// The first so many cells are in front.
+    /// The number of cells in front: the first ones.
     front: usize,
     parts: Vec<Part>,
 }

@@ -63,7 +63,7 @@ mod tests {
     use super::*;
     use crate::paper::runs::made_up;
 
-    /// Ten runs each of CL and IG, of which so many failed.
+    /// Ten runs each of CL and IG, and how many of them failed.
     fn condition(failed: [u64; 2]) -> Trial {
         let mut runs = Runs::default();
         for (strategy, failed) in ["CL", "IG"].into_iter().zip(failed) {

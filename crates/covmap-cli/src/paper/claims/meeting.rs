@@ -103,11 +103,9 @@ mod tests {
                 runs.runs.extend(made_up(&[(strategy, start, 1, &values)]).runs);
             };
             for n in 1..=10u32 {
-                #[allow(clippy::cast_precision_loss, reason = "small")]
                 let path = 10.0 * f64::from(n) + start as f64;
                 add(&mut runs, &name(n), path, most * f64::from(n) / 10.0);
             }
-            #[allow(clippy::cast_precision_loss, reason = "small")]
             add(&mut runs, "CL", cl.0 + 1.2 * start as f64, cl.1);
         }
         runs

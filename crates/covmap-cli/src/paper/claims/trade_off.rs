@@ -46,7 +46,6 @@ fn advantage(runs: &Runs, weight: f64) -> Option<Estimate> {
     }
     let cl = |metric: &str| {
         let values = runs.values(Strategy::Cl, metric);
-        #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
         let n = values.len() as f64;
         values.iter().sum::<f64>() / n
     };
@@ -85,7 +84,6 @@ fn best_window(
 ) -> Option<Strategy> {
     let mean_cost = |window: &Strategy| {
         let costs: Vec<f64> = runs.with(*window).map(cost).filter(|c| c.is_finite()).collect();
-        #[allow(clippy::cast_precision_loss, reason = "a series of runs")]
         let n = costs.len() as f64;
         (!costs.is_empty()).then(|| (costs.iter().sum::<f64>() / n, *window))
     };

@@ -11,7 +11,7 @@ use crate::probes::ProbeHistograms;
 use covmap::lanes::{LANES, Lanes};
 use covmap_model::{Outcome, SensorModel};
 
-/// Distances up to the usable range are put into so many bands.
+/// The number of bands into which distances up to the usable range are put.
 pub(super) const BANDS: usize = 4;
 /// No member of a family gains more than this times the largest of those that are evaluated, in
 /// any of the probes. With 1.05 a histogram was met whose gain is above its bound.

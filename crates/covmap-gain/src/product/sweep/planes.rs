@@ -53,7 +53,7 @@ impl Clone for GainPlanes {
 }
 
 impl GainPlanes {
-    /// Makes room for so many rows of cells, some of them `inside` of the grid, of so many blocks.
+    /// Makes room for a number of rows of cells, some of them `inside` of the grid, of a number of blocks.
     /// Memory that is asked for as zeros costs nothing until it is used, and most rows outside were
     /// outside before.
     pub(super) fn prepare(

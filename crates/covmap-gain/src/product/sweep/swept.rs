@@ -9,7 +9,7 @@ use covmap::lanes::{LANES, TOGETHER, add_product};
 use pulp::{Simd, WithSimd};
 use std::ops::Range;
 
-/// So many beams of a row are prepared and then summed.
+/// The number of beams of a row that are prepared together and then summed.
 const BEAMS_TOGETHER: usize = 16;
 
 /// A row that is asked for, at one ring after the other.

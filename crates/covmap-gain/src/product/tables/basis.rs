@@ -19,9 +19,9 @@ use std::ops::Range;
 /// The gain of a mixture may be off by so much of what an interpolated one may, where the readings
 /// are those that tell most.
 pub(super) const MIXTURE_TOLERANCE: f64 = 0.5;
-/// So many readings tell how large a basis must be, about.
+/// The number of readings from which the size of the basis is estimated.
 const SAMPLE: usize = 512;
-/// So many blocks of cells are looked through by one thread.
+/// The number of blocks of cells that one thread looks through.
 const BLOCKS: usize = 64;
 
 /// How the gain of an imagined reading is found.
@@ -80,7 +80,7 @@ impl Basis {
         (needed <= most).then(|| self.extend(readings, probes))
     }
 
-    /// Makes room for the gains of so many blocks of cells.
+    /// Makes room for the gains of a number of blocks of cells.
     pub(crate) fn make_room(&mut self, blocks: usize) {
         self.gains = vec![[0.0; LANES]; blocks * self.readings.len()];
     }
@@ -125,7 +125,7 @@ impl Basis {
 }
 
 impl MixtureQueue {
-    /// The places of the next so many readings.
+    /// The places of the next readings.
     pub(crate) fn take(&mut self, count: usize) -> Range<usize> {
         self.taken += count;
         self.taken - count..self.taken

@@ -90,7 +90,7 @@ fn cosines(degree: usize, nodes: usize) -> Vec<f64> {
     (0..nodes).map(cosine).collect()
 }
 
-/// Rows of so many numbers, cut into pieces of [`TOGETHER`].
+/// Rows of numbers, cut into pieces of [`TOGETHER`].
 fn together(rows: &[Vec<f64>], count: usize) -> Vec<Vec<[f32; TOGETHER]>> {
     let number = |row: &Vec<f64>, i: usize| row.get(i).map_or(0.0, |x| to_f32(*x));
     let piece =

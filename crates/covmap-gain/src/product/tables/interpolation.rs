@@ -26,7 +26,7 @@ impl Nodes {
         Self { at: points.to_vec(), weights: (0..points.len()).map(row).collect() }
     }
 
-    /// So many nodes; the points themselves if that is as many.
+    /// A number of nodes; the points themselves if there are no more of them.
     pub(crate) fn new(points: &[f64], count: usize, shift: Option<f64>) -> Self {
         if count < points.len() { Self::chebyshev(points, count, shift) } else { Self::all(points) }
     }

@@ -72,7 +72,7 @@ impl RingNeeds {
 }
 
 impl NeededRun {
-    /// The blocks of cells that hold the run, seen from all view-points of a group, of so many blocks
+    /// The blocks of cells that hold the run, seen from all view-points of a group, of a number of blocks
     /// in a row.
     #[inline(always)]
     pub(crate) fn blocks(&self, group: usize, blocks: usize) -> RangeInclusive<isize> {

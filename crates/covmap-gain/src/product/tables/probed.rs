@@ -56,7 +56,7 @@ pub struct RangeInterpolation {
 }
 
 impl RangeInterpolation {
-    /// That of a cell of a distance ring with a histogram, at so many ranges. `None` for another
+    /// That of a cell of a distance ring with a histogram, at a number of ranges. `None` for another
     /// update, and for a ring beyond which nothing ends.
     pub fn of(
         model: &SensorModel,

@@ -17,8 +17,8 @@ use std::ops::Range;
 
 /// Fewer readings in front may leave a gain off by so much of what an interpolated one may.
 const REDUCED: f64 = 0.3;
-/// If readings of the end are mixtures of more than this, they are evaluated: to keep the gains of
-/// so many for every cell would take more memory than it is worth.
+/// If readings of the end are mixtures of more than this, they are evaluated: to keep their gains
+/// for every cell would take more memory than it is worth.
 const MOST_AT_END: usize = 24;
 /// See [`RingBuilder::leniency`].
 pub(super) const MOST_LENIENT: f64 = 10.0;
