@@ -4,10 +4,9 @@ use super::paths::{Paths, driven, millimetres, rounded};
 use super::plan::{Job, Plan};
 use super::record::{RunRecord, Value, values};
 use anyhow::Result;
-use covmap_explore::{Ending, Event, Limits, TraceHasher, View};
-use covmap_lab::{Accuracy, Config, Experiment, Tally, Truth};
-use covmap_plan::Strategy;
-use covmap_world::{Extent, Scenario, Surface, World};
+use covmap_explore::{Ending, Event, TraceHasher, View};
+use covmap_lab::{Accuracy, Experiment, Tally, Truth};
+use covmap_world::World;
 use cpu_time::ThreadTime;
 use indexmap::IndexMap;
 use std::ops::ControlFlow;
@@ -105,21 +104,76 @@ fn measure(
     Ok(Some((all, times, paths)))
 }
 
-/// The names of all numbers that are measured of a run, in the order of the columns of
-/// `runs.csv`: those of a run in an empty closet.
-pub(crate) fn numbers() -> Vec<String> {
-    let extent = Extent { width: 1.0, height: 1.0 };
-    let closet = Scenario { name: "closet".into(), extent, start: None, obstacles: vec![] };
-    let mut config = Config::b21r();
-    config.resolution = 0.2;
-    config.planner.strategy = Strategy::Cl;
-    let limits = Limits { max_scans: Some(1), ..Limits::default() };
-    let measured = || -> Result<Option<Measured>> {
-        let world = World::from_scenario(&closet, Surface::Rough)?;
-        let experiment = Experiment::new(&world, &config, None, limits, 1)?;
-        measure(&world, &experiment, false, &mut |_, _| ControlFlow::Continue(()))
-    };
-    let values = measured().ok().flatten().map(|(values, ..)| values).unwrap_or_default();
-    let is_number = |(_, value): &(String, Value)| matches!(value, Value::Number(_));
-    values.into_iter().filter(is_number).map(|(name, _)| name).collect()
+/// The names of all numbers that are measured of a run, in the order of the columns of `runs.csv`.
+pub(crate) const NUMBERS: [&str; 46] = [
+    "resolution",
+    "scans",
+    "decisions",
+    "bumps",
+    "path_length_m",
+    "turns_rad",
+    "cells.exhausted",
+    "cells.not_seen",
+    "cells.open",
+    "cells.outside",
+    "cells.resolved",
+    "cells.unreachable",
+    "completeness",
+    "wall_recall",
+    "phantom",
+    "mae_mode",
+    "mae_mean",
+    "mean_log_likelihood",
+    "share_entropy_above_0_65",
+    "cut_off.bumps",
+    "cut_off.cells",
+    "cut_off.passages",
+    "cut_off.phantoms",
+    "cut_off.unknown",
+    "negative_gains",
+    "capped_cells",
+    "crps",
+    "mae_free",
+    "mae_partial",
+    "mae_solid",
+    "mae_observable",
+    "log_likelihood_observable",
+    "crps_observable",
+    "mae_free_observable",
+    "mae_partial_observable",
+    "mae_solid_observable",
+    "share_explored",
+    "share_uncertain",
+    "observable_cells",
+    "compared_cells",
+    "measurements.until_explored",
+    "measurements.until_explored_discounted",
+    "measurements.mean",
+    "measurements.sd",
+    "measurements.min",
+    "measurements.max",
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use covmap_explore::Limits;
+    use covmap_lab::Config;
+    use covmap_world::{Extent, Scenario, Surface};
+
+    #[test]
+    fn the_numbers_of_a_run_are_those_that_are_named() {
+        let extent = Extent { width: 1.0, height: 1.0 };
+        let closet = Scenario { name: "closet".into(), extent, start: None, obstacles: vec![] };
+        let config = Config { resolution: 0.2, ..Config::b21r() };
+        let limits = Limits { max_scans: Some(1), ..Limits::default() };
+        let world = World::from_scenario(&closet, Surface::Rough).unwrap();
+        let experiment = Experiment::new(&world, &config, None, limits, 1).unwrap();
+        let go_on = &mut |_: &Event, _: &View<'_>| ControlFlow::Continue(());
+        let (values, ..) = measure(&world, &experiment, false, go_on).unwrap().unwrap();
+        let is_number = |(_, value): &(&String, &Value)| matches!(value, Value::Number(_));
+        let numbers: Vec<&str> =
+            values.iter().filter(is_number).map(|(name, _)| name.as_str()).collect();
+        assert_eq!(numbers, NUMBERS);
+    }
 }

@@ -1,6 +1,7 @@
 //! All runs of a campaign, checked before any of them starts.
 
 use super::digest::Digest;
+use super::execute::NUMBERS;
 use super::file::{Campaign, NamedWorld, Setting};
 use super::folder::{Manifest, Planned};
 use super::record::RunKey;
@@ -168,10 +169,9 @@ fn check_lists(campaign: &Campaign) -> Result<()> {
     }
     check_count(campaign)?;
     unique("metrics", campaign.metrics.iter().cloned())?;
-    let known = super::execute::numbers();
     for metric in &campaign.metrics {
-        if !known.contains(metric) {
-            bail!("metrics: {metric:?} is none; they are {}", known.join(", "));
+        if !NUMBERS.contains(&metric.as_str()) {
+            bail!("metrics: {metric:?} is none; they are {}", NUMBERS.join(", "));
         }
     }
     Ok(())
