@@ -1,6 +1,7 @@
 //! What can be typed.
 
 mod bench;
+mod campaigns;
 mod effort;
 mod experiments;
 mod files;
@@ -11,13 +12,14 @@ mod settings;
 mod values;
 
 pub(crate) use bench::{Bench, Rows};
+pub(crate) use campaigns::{Campaign, Collect};
 pub(crate) use experiments::{Experiments, Figure, Paper, Table};
 pub(crate) use files::{Beside, Force, Log, Model, Truth};
 pub(crate) use read_out::{ReadOutFile, Reader};
 pub(crate) use safe_map::SafeMap;
 pub(crate) use settings::Settings;
 
-use crate::campaign::{Shard, VERSION};
+use crate::campaign::VERSION;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
 use covmap_model::Registers;
 use covmap_plan::Strategy;
@@ -25,14 +27,14 @@ use effort::EffortName;
 use nalgebra::{Isometry2, Point2};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
-use values::{every, every_degrees, named_file, place, resolution, start, while_driving};
+use values::{every, every_degrees, place, resolution, start, while_driving};
 
 const EXIT_CODES: &str = "\
 Exit codes:
   0    explored: no cell is open (explore); done (the others)
   2    bad input: an argument or a file, or something that cannot be written
   3    the budget of scans is spent (--max-scans)
-  4    the robot could not leave its start, was boxed in, or heard no echo at all
+  4    the robot could not leave its start, was boxed in, heard no echo at all, or failed
   130  interrupted with Ctrl-C; what there was is written all the same
   141  nobody read on what was printed";
 
@@ -162,35 +164,6 @@ Examples:
                               large ones
 ";
 
-const CAMPAIGN_EXAMPLES: &str = "\
-CAMPAIGN.ron names worlds, settings, strategies, starts and seeds; every combination is a run.
-What they are in a file is in docs/guide.md, and in configs/fig7.ron.
-
-Each run is recorded when it is done. Begun again, the campaign goes on with what is missing;
-damaged results are done again. Ctrl-C ends it, and what is done stays.
-
-The folder that is written:
-  runs.csv                  a line a run: all numbers but times
-  timings.csv               a line a run: times
-  summary.csv               mean, standard deviation, 95 % interval of the mean, n, n cut short
-  campaign.json, runs/      the list of the runs, and a file for each that is done
-As long as runs are missing, the names of the tables say so: runs-8-of-12.csv.
-
-Examples:
-  cargo xtask campaign configs/fig7.ron
-  cargo xtask campaign configs/fig7.ron --shard 2/3 --out out/fig7-2
-
-Exit codes: 0 done; 2 bad input, or a result that cannot be written; 130 interrupted with Ctrl-C.
-";
-
-const COLLECT_EXAMPLES: &str = "\
-All folders are of one campaign and one version of covmap. The tables are the same as if one
-machine had run everything.
-
-Example:
-  cargo xtask collect out/fig7-1 out/fig7-2 out/fig7-3 --out out/fig7
-";
-
 /// Explores unknown environments with coverage maps (Stachniss & Burgard, 2003).
 ///
 /// A simulated robot with a ring of sonars explores a world until a certificate says of every
@@ -267,10 +240,10 @@ pub(crate) enum Command {
     #[command(after_help = experiments::PAPER_EXAMPLES)]
     Paper(Paper),
     /// Runs worlds × settings × strategies × starts × seeds, and goes on where it was stopped.
-    #[command(after_help = CAMPAIGN_EXAMPLES)]
+    #[command(after_help = campaigns::CAMPAIGN_EXAMPLES)]
     Campaign(Campaign),
     /// Merges the folders of a campaign that several machines ran.
-    #[command(after_help = COLLECT_EXAMPLES)]
+    #[command(after_help = campaigns::COLLECT_EXAMPLES)]
     Collect(Collect),
 }
 
@@ -469,44 +442,6 @@ pub(crate) struct Readings {
     #[command(flatten)]
     pub(crate) force: Force,
     /// Print nothing but errors
-    #[arg(long)]
-    pub(crate) quiet: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Campaign {
-    /// What is run (.ron)
-    #[arg(value_name = "CAMPAIGN.ron")]
-    pub(crate) file: PathBuf,
-    /// The number of runs at the same time [default: one for each core]
-    #[arg(long, value_name = "N")]
-    pub(crate) jobs: Option<NonZeroUsize>,
-    /// Takes the world called NAME from another file than the campaign says
-    #[arg(long = "world", value_name = "NAME=FILE", value_parser = named_file)]
-    pub(crate) worlds: Vec<(String, PathBuf)>,
-    /// Only say how many runs there are, and whether all is well with them
-    #[arg(long)]
-    pub(crate) check: bool,
-    /// Every N-th run only, from the I-th on
-    #[arg(long, value_name = "I/N", default_value = "1/1")]
-    pub(crate) shard: Shard,
-    /// Where the results go [default: out/CAMPAIGN]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Print nothing but errors and notes
-    #[arg(long)]
-    pub(crate) quiet: bool,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct Collect {
-    /// Folders that `campaign` wrote
-    #[arg(value_name = "DIR", required = true)]
-    pub(crate) dirs: Vec<PathBuf>,
-    /// Where the results go [default: the first DIR]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Print nothing but errors and notes
     #[arg(long)]
     pub(crate) quiet: bool,
 }

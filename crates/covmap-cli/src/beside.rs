@@ -2,9 +2,10 @@
 
 use crate::arguments::Beside;
 use crate::figures::Output;
-use crate::say;
+use crate::{csv_file, say};
 use anyhow::{Result, bail};
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
+use covmap_fit::{ExampleScore, Weighting};
 use covmap_io::read_json;
 use serde::Deserialize;
 use std::path::Path;
@@ -20,23 +21,7 @@ struct Summary {
     scans: u32,
     path_length_m: f64,
     completeness: f64,
-    measured: Classes,
-}
-
-/// How well the cells that were measured are explained.
-#[derive(Deserialize)]
-struct Classes {
-    free: Class,
-    partial: Class,
-    solid: Class,
-}
-
-/// A class without a cell has no numbers.
-#[derive(Deserialize)]
-struct Class {
-    log_likelihood: Option<f64>,
-    error_of_mode: Option<f64>,
-    found: Option<f64>,
+    measured: ExampleScore,
 }
 
 /// One run.
@@ -49,7 +34,7 @@ pub(crate) fn run(arguments: &Beside) -> Result<ExitCode> {
     let rows = arguments.runs.iter().map(|dir| Row::read(dir)).collect::<Result<Vec<_>>>()?;
     let output = Output::create(&arguments.out, arguments.force.replace())?;
     let table: Vec<Vec<String>> = rows.iter().map(Row::fields).collect();
-    let quoted = |row: &Vec<String>| row.iter().map(|field| quoted(field)).collect();
+    let quoted = |row: &Vec<String>| row.iter().map(|field| csv_file::field(field)).collect();
     output.table("runs", &COLUMNS, &table.iter().map(quoted).collect::<Vec<_>>())?;
     output.figure("runs", &figure(&rows))?;
     if !arguments.quiet {
@@ -83,19 +68,23 @@ impl Row {
         Ok(Self { name: name.into_owned(), summary: read_json(summary)? })
     }
 
-    /// The mean of the log-likelihoods of the three classes, of those that there are \[nats\].
+    /// The class mean of the log-likelihood \[nats\]; `None` if nothing was measured.
     fn class_mean(&self) -> Option<f64> {
-        let Classes { free, partial, solid } = &self.summary.measured;
-        let there: Vec<f64> =
-            [free, partial, solid].iter().filter_map(|c| c.log_likelihood).collect();
-        let mean = there.iter().sum::<f64>() / there.len() as f64;
-        (!there.is_empty()).then_some(mean)
+        let measured = &self.summary.measured;
+        (measured.all.cells > 0).then(|| Weighting::Classes.objective(measured))
+    }
+
+    /// The share of the first layer of walls that is found; `None` if there is none.
+    fn walls_found(&self) -> Option<f64> {
+        let walls = &self.summary.measured.solid;
+        (walls.cells > 0).then_some(walls.found)
     }
 
     fn fields(&self) -> Vec<String> {
         let Summary {
             world, strategy, seed, resolution, scans, path_length_m, completeness, ..
         } = &self.summary;
+        let partial = &self.summary.measured.partial;
         let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:.3}"));
         vec![
             self.name.clone(),
@@ -107,8 +96,8 @@ impl Row {
             format!("{path_length_m:.0}"),
             format!("{completeness:.3}"),
             number(self.class_mean()),
-            number(self.summary.measured.partial.error_of_mode),
-            number(self.summary.measured.solid.found),
+            number((partial.cells > 0).then_some(partial.error_of_mode)),
+            number(self.walls_found()),
         ]
     }
 
@@ -118,12 +107,6 @@ impl Row {
         let counts = strategy.starts_with("COUNT(");
         if counts { "COUNT".into() } else { strategy.clone() }
     }
-}
-
-/// Every field as CSV has it.
-fn quoted(field: &str) -> String {
-    let plain = !field.contains([',', '"', '\n', '\r']);
-    if plain { field.to_owned() } else { format!("\"{}\"", field.replace('"', "\"\"")) }
 }
 
 /// The table for the terminal: columns as wide as their longest field.
@@ -157,11 +140,9 @@ fn figure(rows: &[Row]) -> Figure {
         panel(
             "How well the map explains the truth",
             "class mean of the log-likelihood [nats]",
-            &|row| row.class_mean(),
+            &Row::class_mean,
         ),
-        panel("Walls that are found", "share of the first layer", &|row| {
-            row.summary.measured.solid.found
-        }),
+        panel("Walls that are found", "share of the first layer", &Row::walls_found),
     ];
     Figure {
         title: "What scans and metres buy".into(),

@@ -27,3 +27,12 @@ pub(crate) fn write_to(
     rows(&mut file).map_err(fail)?;
     Ok(file.finish()?)
 }
+
+/// A text as a field of a table: in quotes where it would be torn.
+pub(crate) fn field(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}

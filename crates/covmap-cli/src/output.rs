@@ -79,8 +79,13 @@ pub(crate) fn named(parts: impl IntoIterator<Item = Option<String>>) -> PathBuf 
 /// What a file is called, for the name of a folder.
 pub(crate) fn stem(file: &Path) -> String {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+    plain(&stem)
+}
+
+/// A text with nothing in it that a file's name should not have.
+pub(crate) fn plain(text: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "._-".contains(c) { c } else { '_' };
-    stem.chars().map(plain).collect()
+    text.chars().map(plain).collect()
 }
 
 /// A number for the name of a folder, if it is not the usual one.

@@ -1,10 +1,10 @@
 //! Values for all cells and for each class of them.
 
 use covmap::Class;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// One value for all cells, and one for each class.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ByClass<T> {
     /// All cells.
     pub all: T,

@@ -3,7 +3,7 @@
 use crate::{ByClass, Class};
 use covmap::{bin_coverage, mode_bin};
 use covmap_statistics::{LIKELIHOOD_FLOOR, central, crps, interval_holds, log_likelihood};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::iter::Sum;
 use std::ops::Add;
 
@@ -13,7 +13,7 @@ const BETWEEN: (f64, f64) = (0.05, 0.95);
 const FOUND: f64 = 0.5;
 
 /// How well a map explains the cells of one class: means over the cells.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClassScore {
     /// How many cells.
     pub cells: usize,

@@ -15,9 +15,6 @@ pub enum SetupError {
     /// The mission is impossible in any world.
     #[error(transparent)]
     Mission(#[from] MissionError),
-    /// The start pose is not finite or not in the extent.
-    #[error("the start ({}, {}) lies outside of the world", short(.0), short(.1))]
-    StartOutside(f64, f64),
     /// Something is where the robot should start.
     #[error(
         "the robot of radius {radius} m cannot stand at the start ({}, {}): the next obstacle is {clearance:.3} m from there",
@@ -81,7 +78,7 @@ pub fn mission(
     let at = Point2::from(start.translation.vector);
     let extent = Extent { low: world.lower_left(), high: world.lower_left() + world.size() };
     if !extent.holds(at) || !start.rotation.angle().is_finite() {
-        return Err(SetupError::StartOutside(at.x, at.y));
+        return Err(MissionError::StartOutside(at.x, at.y).into());
     }
     let clearance = world.clearance(at);
     if clearance < radius {

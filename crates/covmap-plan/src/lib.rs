@@ -30,6 +30,7 @@ mod outside;
 mod parameters;
 mod passage;
 mod planner;
+mod search;
 mod strategy;
 mod travel_cost;
 mod traversable;

@@ -1,7 +1,8 @@
-//! Strategies from outside: whoever uses the crate chooses among the candidates.
+//! Strategies from outside: the user of the crate chooses among the candidates.
 
 use crate::decision::Contest;
 use crate::planner::Candidates;
+use crate::search::Search;
 use crate::{CandidateRecord, Decision, Planner};
 use covmap::{Cell, CoverageMap};
 
@@ -24,36 +25,29 @@ impl Planner {
         from: Cell,
         strategy: impl FnOnce(&[CandidateRecord]) -> Option<usize>,
     ) -> Option<Decision> {
-        let (candidates, towards_ground) = self.worthwhile(map, from)?;
+        let mut searches = Search::IN_ORDER.into_iter();
+        let (candidates, search) =
+            searches.find_map(|search| self.worthwhile(map, from, search))?;
         let mut contest = Contest::new(self.records(&candidates, from), self.score());
         self.fill_gains(&mut contest.records);
         contest.apply();
         let chosen = strategy(&contest.records)?;
         let target = contest.records.get(chosen)?.cell;
         Some(Decision {
-            towards_ground,
+            towards_ground: search == Search::TowardsGround,
             ..self.decision(&candidates, from, (target, contest.records, 0))?
         })
     }
 
-    /// The candidates that promise enough: those in reach; else those that look at what keeps the robot off
-    /// more ground, which is told; else those beyond a passage.
-    fn worthwhile(&mut self, map: &CoverageMap, from: Cell) -> Option<(Candidates, bool)> {
-        let least = self.least_change;
-        if let Some(mut near) = self.windowed_candidates(map, from) {
-            self.leave_out_vain(map, &mut near.indices, least);
-            if !near.indices.is_empty() {
-                return Some((near, false));
-            }
-        }
-        if let Some((mut towards, least)) = self.candidates_towards_ground(map, from) {
-            self.leave_out_vain(map, &mut towards.indices, Some(least));
-            if !towards.indices.is_empty() {
-                return Some((towards, true));
-            }
-        }
-        let mut beyond = self.candidates_beyond_a_passage(map, from)?;
-        self.leave_out_vain(map, &mut beyond.indices, least);
-        (!beyond.indices.is_empty()).then_some((beyond, false))
+    /// The candidates of a search that promise enough; `None` without any.
+    fn worthwhile(
+        &mut self,
+        map: &CoverageMap,
+        from: Cell,
+        search: Search,
+    ) -> Option<(Candidates, Search)> {
+        let (mut candidates, least) = self.searched(map, from, search)?;
+        self.leave_out_vain(map, &mut candidates.indices, least);
+        (!candidates.indices.is_empty()).then_some((candidates, search))
     }
 }

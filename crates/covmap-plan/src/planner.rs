@@ -4,6 +4,7 @@ use crate::decision::{Contest, REPORTED, Score};
 use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
 use crate::parameters::LeastChange;
+use crate::search::Search;
 use crate::traversable::Traversable;
 use crate::turning::straight;
 use crate::window::Window;
@@ -335,18 +336,11 @@ impl Planner {
     }
 
     fn choose_here(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
-        let (candidates, least) = (self.windowed_candidates(map, from), self.least_change);
-        candidates
-            .and_then(|candidates| self.choose_among(map, from, &candidates, least))
-            .or_else(|| {
-                let (towards, least) = self.candidates_towards_ground(map, from)?;
-                let decision = self.choose_among(map, from, &towards, Some(least))?;
-                Some(Decision { towards_ground: true, ..decision })
-            })
-            .or_else(|| {
-                let beyond = self.candidates_beyond_a_passage(map, from)?;
-                self.choose_among(map, from, &beyond, least)
-            })
+        Search::IN_ORDER.into_iter().find_map(|search| {
+            let (candidates, least) = self.searched(map, from, search)?;
+            let decision = self.choose_among(map, from, &candidates, least)?;
+            Some(Decision { towards_ground: search == Search::TowardsGround, ..decision })
+        })
     }
 
     /// Chooses one of some candidates; `None` if all of them would measure in vain.

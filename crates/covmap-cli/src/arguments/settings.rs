@@ -1,5 +1,6 @@
 //! Parameters that are set one by one.
 
+use crate::output;
 use anyhow::{Result, anyhow};
 use clap::Args;
 use covmap_lab::Config;
@@ -40,10 +41,9 @@ impl Settings {
 
     /// The parameters in the name of a folder; `None` without any.
     pub(crate) fn in_name(&self) -> Option<String> {
-        let plain = |c: char| if c.is_alphanumeric() || "._-".contains(c) { c } else { '_' };
         let last = |setting: &Setting| {
             let from = setting.path.rfind('.').map_or(0, |dot| dot + 1);
-            setting.typed[from..].chars().map(plain).collect::<String>()
+            output::plain(&setting.typed[from..])
         };
         let names: Vec<String> = self.set.iter().map(last).collect();
         (!names.is_empty()).then(|| names.join("-"))

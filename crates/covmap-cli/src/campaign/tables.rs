@@ -43,7 +43,11 @@ pub(crate) fn write<'a>(
         writeln!(out, "{KEY},{},{}", PARAMETERS.join(","), columns.join(","))?;
         for record in records {
             let value = |name: &String| {
-                record.values.get(name).map(|value| text(&value.to_string())).unwrap_or_default()
+                record
+                    .values
+                    .get(name)
+                    .map(|value| csv_file::field(&value.to_string()))
+                    .unwrap_or_default()
             };
             let values: Vec<String> = columns.iter().map(value).collect();
             writeln!(out, "{},{}", key(record), values.join(","))?;
@@ -101,7 +105,7 @@ const KEY: &str = "world,setting,strategy,start,seed";
 /// The fields of the key, and the strategy's parameters.
 fn key(record: &RunRecord) -> String {
     let key = &record.key;
-    let names = [&key.world, &key.setting, &key.strategy].map(|name| text(name));
+    let names = [&key.world, &key.setting, &key.strategy].map(|name| csv_file::field(name));
     format!("{},{},{},{}", names.join(","), key.start, key.seed, numbers(&key.strategy))
 }
 
@@ -109,15 +113,6 @@ fn key(record: &RunRecord) -> String {
 fn numbers(strategy: &str) -> String {
     let strategy = strategy.parse::<Strategy>();
     strategy.map_or_else(|_| Default::default(), |strategy| parameters(&strategy)).join(",")
-}
-
-/// A text in a table.
-fn text(text: &str) -> String {
-    if text.contains([',', '"']) {
-        format!("\"{}\"", text.replace('"', "\"\""))
-    } else {
-        text.to_owned()
-    }
 }
 
 /// Mean, standard deviation and 95 % interval of each metric over starts and seeds, in the
@@ -139,7 +134,7 @@ fn summarised(metrics: &[String], records: &[&RunRecord]) -> String {
         format!("world,setting,strategy,{parameters},metric,n,cut_short,mean,sd,low,high\n");
     for group in order {
         let runs = &groups[&group];
-        let name = format!("{},{}", group.map(text).join(","), numbers(group[2]));
+        let name = format!("{},{}", group.map(csv_file::field).join(","), numbers(group[2]));
         let cut_short = runs.iter().filter(|record| record.is_cut_short()).count();
         for metric in metrics {
             let number = |record: &&RunRecord| match record.values.get(metric) {

@@ -26,6 +26,22 @@ fn runs_are_laid_side_by_side_with_their_accuracy() {
 }
 
 #[test]
+fn a_class_without_a_cell_has_no_numbers_and_no_part_in_the_mean() {
+    let shell = Shell::new();
+    // Walls along the borders of cells: none is covered in part.
+    shell.write("room.ron", r#"(name: "room", extent: (width: 4.0, height: 3.0), obstacles: [])"#);
+    shell.expect("explore room.ron --resolution 0.2 --max-scans 9 --out run --quiet", 3);
+    shell.expect("beside run --out both", 0);
+    let measured = &shell.json("run/summary.json")["measured"];
+    assert_eq!(measured["partial"]["cells"], 0);
+    let of = |class: &str| measured[class]["log_likelihood"].as_f64().unwrap();
+    let mean = 0.5 * (of("free") + of("solid"));
+    let table = fs::read_to_string(shell.path("both/runs.csv")).unwrap();
+    let fields: Vec<&str> = table.lines().nth(1).unwrap().split(',').collect();
+    assert_eq!((fields[8], fields[9]), (format!("{mean:.3}").as_str(), ""), "{table}");
+}
+
+#[test]
 fn what_is_no_run_is_refused() {
     let shell = Shell::new();
     shell.refuse("beside nowhere", &["nowhere: no summary.json"]);

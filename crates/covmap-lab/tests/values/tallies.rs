@@ -2,7 +2,7 @@
 
 use super::{close, map_of, mission};
 use covmap::Raster;
-use covmap_explore::Limits;
+use covmap_explore::{Limits, MissionError};
 use covmap_lab::{Config, SetupError, Tally, TraceHeader};
 use covmap_sonar::{Range, Scan};
 use covmap_world::{Extent, Scenario, World};
@@ -51,7 +51,7 @@ fn a_mission_starts_where_the_robot_fits_and_ends_at_the_extent() {
     };
     // The robot's radius is .27 m, the wall is at 0.
     assert!(matches!(at(0.26), Err(SetupError::StartOccupied { .. })));
-    assert!(matches!(at(-0.1), Err(SetupError::StartOutside(..))));
+    assert!(matches!(at(-0.1), Err(SetupError::Mission(MissionError::StartOutside(..)))));
     // 8 × 6 cells of the grid, which has a margin, lie inside.
     let outside = at(0.28).unwrap().outside;
     assert_eq!(outside.values().iter().filter(|outside| !**outside).count(), 48);

@@ -108,7 +108,7 @@ fn a_turn_costs_as_much_as_its_radians_say() {
             let table = corridor.planner.candidate_table(&corridor.map, Cell::new(5, 0));
             table.iter().map(|record| record.cost).collect::<Vec<_>>()
         };
-        // 3 and 7 are 2 m away, and whoever came from nowhere needs no turn.
+        // 3 and 7 are 2 m away, and a robot that came from nowhere needs no turn.
         all_close(&costs(&mut corridor), &[2.0, 2.0], 1e-12);
         corridor.planner.drove(Cell::new(4, 0), Cell::new(5, 0));
         all_close(&costs(&mut corridor), &[2.0 + of_turns, 2.0], 1e-12);
