@@ -1,9 +1,7 @@
 //! What can be typed.
 
-mod bench;
 mod campaigns;
 mod effort;
-mod experiments;
 mod files;
 mod memory;
 mod read_out;
@@ -11,16 +9,17 @@ mod safe_map;
 mod settings;
 mod values;
 
-pub(crate) use bench::{Bench, Rows};
 pub(crate) use campaigns::{Campaign, Collect};
-pub(crate) use experiments::{Experiments, Figure, Paper, Table};
-pub(crate) use files::{Beside, Force, Log, Model, Truth};
-pub(crate) use read_out::{ReadOutFile, Reader};
+pub use files::Force;
+pub(crate) use files::{Beside, Log, Model, Truth};
+pub(crate) use read_out::ReadOutFile;
 pub(crate) use safe_map::SafeMap;
 pub(crate) use settings::Settings;
+pub use values::named_file;
 
-use crate::campaign::VERSION;
 use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand, ValueEnum};
+use clap_complete::Shell;
+use covmap_campaign::VERSION;
 use covmap_model::Registers;
 use covmap_plan::Strategy;
 use effort::EffortName;
@@ -151,17 +150,11 @@ Examples:
       also writes config.ron, whose sonars are the most like those of the log
 ";
 
-const BENCH_EXAMPLES: &str = "\
-Each row is a ratio, measured on one core in one run, by the time that the core computes: how many
-times as long the other way takes to the same answers. Behind a ratio below its target stands
-`falls short`; that is no error. The last lines say how well the answers agree, and how long a
-decision takes on all threads, by the clock. The worlds are offices like scenarios/office.ron in
-cells of 0.1 m, partly explored, with a fixed seed.
-
+const COMPLETIONS_EXAMPLES: &str = "\
 Examples:
-  cargo xtask bench           the whole table, some minutes
-  cargo xtask bench --quick   the same rows on small maps, some seconds: the targets are for the
-                              large ones
+  covmap completions bash > ~/.local/share/bash-completion/completions/covmap
+  covmap completions zsh > ~/.zfunc/_covmap
+  covmap completions fish > ~/.config/fish/completions/covmap.fish
 ";
 
 /// Explores unknown environments with coverage maps (Stachniss & Burgard, 2003).
@@ -170,14 +163,14 @@ Examples:
 /// cell why there is nothing left to do.
 #[derive(Debug, Parser)]
 #[command(name = "covmap", version = VERSION, after_help = EXIT_CODES)]
-pub(crate) struct Arguments {
+pub(crate) struct Arguments<C: Subcommand> {
     #[command(subcommand)]
-    pub(crate) command: Command,
+    pub(crate) command: C,
     #[command(flatten)]
     pub(crate) memory: memory::Memory,
 }
 
-impl Arguments {
+impl<C: Subcommand> Arguments<C> {
     /// What was typed for a program of this name; its help says that name in the examples, too.
     pub(crate) fn typed(name: &str) -> Result<Self, clap::Error> {
         let mut command = named(Self::command().bin_name(name), name);
@@ -193,8 +186,9 @@ fn named(command: clap::Command, name: &str) -> clap::Command {
     command.mut_subcommands(|below| named(below, name))
 }
 
+/// What the program does.
 #[derive(Debug, Subcommand)]
-pub(crate) enum Command {
+pub enum Command {
     /// Explores a world to its end, and writes the map, the pictures and the numbers.
     #[command(after_help = format!("{EXPLORE_EXAMPLES}\n{EXIT_CODES}"))]
     Explore(Explore),
@@ -228,27 +222,28 @@ pub(crate) enum Command {
     /// Compares the readings of simulated sonars with those of a real robot, and fits them.
     #[command(after_help = READINGS_EXAMPLES)]
     Readings(Readings),
-    /// Measures how fast decisions, updates and echoes are, as ratios.
-    #[command(after_help = BENCH_EXAMPLES)]
-    Bench(Bench),
-    /// Draws a figure of the paper from its own experiment.
-    #[command(after_help = experiments::FIGURE_EXAMPLES)]
-    Figure(Figure),
-    /// Makes a table of the paper from its own experiment.
-    Table(Table),
-    /// Runs all of the paper's experiments, draws all figures, and judges all claims.
-    #[command(after_help = experiments::PAPER_EXAMPLES)]
-    Paper(Paper),
     /// Runs worlds × settings × strategies × starts × seeds, and goes on where it was stopped.
     #[command(after_help = campaigns::CAMPAIGN_EXAMPLES)]
     Campaign(Campaign),
     /// Merges the folders of a campaign that several machines ran.
     #[command(after_help = campaigns::COLLECT_EXAMPLES)]
     Collect(Collect),
+    /// Writes the completions of a shell, to be sourced by it.
+    #[command(after_help = COMPLETIONS_EXAMPLES)]
+    Completions(Completions),
 }
 
+/// What can be typed for `completions`.
 #[derive(Debug, Args)]
-pub(crate) struct Explore {
+pub struct Completions {
+    /// The shell
+    #[arg(value_enum)]
+    pub(crate) shell: Shell,
+}
+
+/// What can be typed for `explore`.
+#[derive(Debug, Args)]
+pub struct Explore {
     /// A scenario (.ron), or a map of ROS map_server (.yaml with its .pgm or .png)
     pub(crate) world: PathBuf,
     /// Robot, sonar, sensor model and planner [default: configs/b21r.ron, built in]
@@ -319,8 +314,9 @@ impl WidestRegisters {
     }
 }
 
+/// What can be typed for `explain`.
 #[derive(Debug, Args)]
-pub(crate) struct Explain {
+pub struct Explain {
     /// The folder that `explore` wrote (or the DIR.partial that it is writing)
     pub(crate) dir: PathBuf,
     /// The number of the decision, counted from 0 as in the trace
@@ -340,8 +336,9 @@ pub(crate) enum SensorName {
     Laser,
 }
 
+/// What can be typed for `map`.
 #[derive(Debug, Args)]
-pub(crate) struct Map {
+pub struct Map {
     /// A CARMEN log, or a folder with od.txt, sonar.txt and laser.txt
     pub(crate) log: PathBuf,
     /// Resolution, robot and sensor model [default: configs/laser.ron for a laser,
@@ -382,8 +379,9 @@ pub(crate) struct Map {
     pub(crate) quiet: bool,
 }
 
+/// What can be typed for `fit`.
 #[derive(Debug, Args)]
-pub(crate) struct Fit {
+pub struct Fit {
     /// What is fitted to what (.ron)
     #[arg(value_name = "FIT.ron")]
     pub(crate) file: PathBuf,
@@ -397,8 +395,9 @@ pub(crate) struct Fit {
     pub(crate) quiet: bool,
 }
 
+/// What can be typed for `survey`.
 #[derive(Debug, Args)]
-pub(crate) struct Survey {
+pub struct Survey {
     /// A CARMEN log, or a folder with od.txt and laser.txt
     pub(crate) log: PathBuf,
     /// Poses instead of the log's: lines `t_ms x_m y_m theta_rad` in the order of time
@@ -414,8 +413,9 @@ pub(crate) struct Survey {
     pub(crate) quiet: bool,
 }
 
+/// What can be typed for `readings`.
 #[derive(Debug, Args)]
-pub(crate) struct Readings {
+pub struct Readings {
     /// A CARMEN log, or a folder with od.txt, sonar.txt and laser.txt
     pub(crate) log: PathBuf,
     /// The survey of the place where the log was recorded, from `cargo xtask survey`

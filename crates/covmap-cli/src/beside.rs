@@ -1,11 +1,12 @@
 //! `beside`: runs of `explore` side by side, and what their scans and metres bought.
 
 use crate::arguments::Beside;
-use crate::figures::Output;
-use crate::{csv_file, say};
+use crate::terminal::say;
 use anyhow::{Result, bail};
+use covmap_draw::FigureFolder;
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 use covmap_fit::{ExampleScore, Weighting};
+use covmap_io::csv;
 use covmap_io::read_json;
 use serde::Deserialize;
 use std::path::Path;
@@ -32,9 +33,9 @@ struct Row {
 
 pub(crate) fn run(arguments: &Beside) -> Result<ExitCode> {
     let rows = arguments.runs.iter().map(|dir| Row::read(dir)).collect::<Result<Vec<_>>>()?;
-    let output = Output::create(&arguments.out, arguments.force.replace())?;
+    let output = FigureFolder::create(&arguments.out, arguments.force.replace())?;
     let table: Vec<Vec<String>> = rows.iter().map(Row::fields).collect();
-    let quoted = |row: &Vec<String>| row.iter().map(|field| csv_file::field(field)).collect();
+    let quoted = |row: &Vec<String>| row.iter().map(|field| csv::field(field)).collect();
     output.table("runs", &COLUMNS, &table.iter().map(quoted).collect::<Vec<_>>())?;
     output.figure("runs", &figure(&rows))?;
     if !arguments.quiet {

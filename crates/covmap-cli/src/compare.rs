@@ -1,17 +1,22 @@
 //! `compare`: mapping methods against the same truth, each tuned and calibrated alike.
 
 use crate::arguments::Fit;
-use crate::fit_file::{FitFile, FitPlan, Source};
-use crate::interrupt::Interrupt;
-use crate::progress::Progress;
-use crate::{csv_file, interrupt, output, say};
+use crate::output;
+use crate::terminal::Terminal;
+use crate::terminal::interrupt;
+use crate::terminal::interrupt::Interrupt;
+use crate::terminal::progress::Progress;
+use crate::terminal::say;
 use anyhow::{Result, bail};
 use covmap_fit::{
     Axis, BetaCounting, CellMean, ComparisonSettings, Contender, Crm, Example, LogOdds, Method,
     MethodParameter, Parameter, Row, TuneSettings, Update, compare, tune,
 };
-use covmap_io::{OutputFolder, write_json};
+use covmap_io::csv;
+use covmap_io::{FileError, OutputFolder, write_json};
 use covmap_lab::Config;
+use covmap_lab::Watch;
+use covmap_lab::{FitFile, FitPlan, Source};
 use covmap_model::ModelParameters;
 use covmap_statistics::{stream, uniform};
 use serde::Serialize;
@@ -54,12 +59,13 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
         bail!("{}: held_out: a comparison needs at least one entry", arguments.file.display());
     }
     let folder = output::of_fit("compare", arguments, &plan)?;
-    let mut progress = Progress::new(arguments.quiet);
-    let examples = |sources: &[Source]| plan.examples(sources, (&progress, &interrupt));
+    let progress = Progress::new(arguments.quiet);
+    let terminal = Terminal { progress: &progress, interrupt: &interrupt };
+    let examples = |sources: &[Source]| plan.examples(sources, &terminal);
     let (a, b) = (examples(&file.training)?, examples(&file.held_out)?);
     let mut directions = Vec::new();
     for (training, test) in [(&a, &b), (&b, &a)] {
-        directions.push(direction(file, config, (training, test), &interrupt, &mut progress)?);
+        directions.push(direction(file, config, (training, test), &terminal)?);
         // What was cut short is no comparison.
         if interrupt.done() {
             return Ok(ExitCode::from(interrupt::EXIT_CODE));
@@ -140,12 +146,11 @@ fn direction(
     file: &FitFile,
     config: &Config,
     (training, test): (&[Example], &[Example]),
-    interrupt: &Interrupt,
-    progress: &mut Progress,
+    watch: &dyn Watch,
 ) -> Result<Direction> {
     let mut contenders = Vec::new();
     for (number, entry) in (0u64..).zip(entries(file, config, training)) {
-        let mut tuned = |calibrated: bool| -> Result<Method> {
+        let tuned = |calibrated: bool| -> Result<Method> {
             if entry.axes.is_empty() {
                 return Ok(entry.method.clone());
             }
@@ -158,8 +163,8 @@ fn direction(
             let mut count = 0;
             let report = |_: Option<f64>| {
                 count += 1;
-                progress.tell(|| format!("{}: {count} of {} maps", entry.name, file.evaluations));
-                interrupt.flow()
+                watch.tell(&format_args!("{}: {count} of {} maps", entry.name, file.evaluations));
+                watch.flow()
             };
             let tuned = tune(
                 &entry.method,
@@ -174,7 +179,7 @@ fn direction(
         let (raw, calibrated) = (tuned(false)?, tuned(true)?);
         contenders.push(Contender { name: entry.name.clone(), raw, calibrated });
     }
-    progress.say("resampling blocks of the trajectories …");
+    watch.begin("resampling blocks of the trajectories …");
     let settings =
         ComparisonSettings { weighting: file.weighting, ..ComparisonSettings::default() };
     let mut random = stream(file.seed, "blocks", 0);
@@ -186,8 +191,8 @@ fn direction(
 const COLUMNS: &str = "fitted_on,method,calibrated,class,cells,log_likelihood,log_likelihood_low,\
 log_likelihood_high,difference,difference_low,difference_high,crps,error,central_50,central_90";
 
-fn write_table(folder: &OutputFolder, directions: &[Direction]) -> Result<()> {
-    csv_file::write(&folder.path("compare.csv"), |table| {
+fn write_table(folder: &OutputFolder, directions: &[Direction]) -> Result<(), FileError> {
+    csv::write(&folder.path("compare.csv"), |table| {
         writeln!(table, "{COLUMNS}")?;
         for direction in directions {
             for row in &direction.rows {

@@ -1,22 +1,24 @@
 //! `explain`: why a decision was taken.
 
+use crate::about::about;
 use crate::arguments::Explain;
-use crate::input::about;
-use crate::replay::{Moment, replay};
-use crate::trace_file::{self, Trace};
-use crate::{certificate_file, explain_picture, say};
+use crate::explain_picture;
+use crate::terminal::say;
 use anyhow::Result;
 use covmap_io::write_file;
+use covmap_lab::results::certificate;
+use covmap_lab::{Moment, replay};
+use covmap_lab::{Trace, in_folder, read_header};
 use covmap_plan::{CandidateRecord, Strategy};
 use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Explain) -> Result<ExitCode> {
     let Explain { dir, step, cell, force } = arguments;
-    let path = trace_file::in_folder(dir)?;
+    let path = in_folder(dir)?;
     let step = &step.unwrap_or(0);
     if let Some(cell) = cell {
-        let grid = trace_file::read_header(&path)?.grid;
-        say::line(certificate_file::why(&dir.join("certificate.csv"), &grid, *cell)?);
+        let grid = read_header(&path)?.grid;
+        say::line(certificate::why(&dir.join("certificate.csv"), &grid, *cell)?);
         return Ok(ExitCode::SUCCESS);
     }
     let trace = Trace::read(&path, *step)?;

@@ -1,10 +1,10 @@
 //! The picture of a decision.
 
 use crate::explain::reason;
-use crate::pictures::certain_coverage;
-use crate::replay::Moment;
 use covmap::{Cell, CoverageMap, Grid, Raster};
 use covmap_draw::{ColorMap, Key, Marker, Picture, Rgb};
+use covmap_lab::Moment;
+use covmap_lab::results::certain_coverage;
 use nalgebra::Point2;
 
 /// How much of the map is seen through the gains.

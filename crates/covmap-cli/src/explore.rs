@@ -1,32 +1,26 @@
 //! `explore`: a world is explored to its end.
 
-use crate::arguments::{Explore, Reader};
-use crate::campaign::Digest;
-use crate::interrupt::{self, Interrupt};
-use crate::progress::Progress;
-use crate::results::Written;
-use crate::trace_file::TraceWriter;
-use crate::world_file::{self, Remarks, WorldFile};
-use crate::{fit_report, input, output, results, say};
+use crate::arguments::Explore;
+use crate::built_in;
+use crate::fit_report;
+use crate::output;
+use crate::terminal::interrupt::{self, Interrupt};
+use crate::terminal::progress::Progress;
+use crate::terminal::say;
 use anyhow::Result;
 use covmap_explore::{Ending, Limits, Run};
-use covmap_io::{MapCounts, MapThresholds};
+use covmap_io::Digest;
+use covmap_io::MapCounts;
+use covmap_lab::TraceWriter;
+use covmap_lab::files;
+use covmap_lab::files::{Remarks, WorldFile};
+use covmap_lab::results;
+use covmap_lab::results::{Task, Written};
 use covmap_lab::{Config, CutOff, Experiment, Summary};
-use covmap_world::World;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
-
-/// A world, the mission in it, and the seed.
-pub(crate) struct Task {
-    pub(crate) world: World,
-    pub(crate) experiment: Experiment,
-    /// When a cell of the map for other software is free or occupied.
-    pub(crate) thresholds: MapThresholds,
-    /// How the map is read.
-    pub(crate) reader: Reader,
-}
 
 pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
@@ -40,12 +34,12 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
     let run = run_line(&task, world, arguments.read_out.path())?;
     let folder = output::folder(&folder_name(arguments, &task)?, &run, arguments.force, &inputs)?;
     if !arguments.quiet {
-        remarks.say();
+        say::remarks(&remarks);
     }
-    let mut progress = Progress::new(arguments.quiet);
+    let progress = Progress::new(arguments.quiet);
     let mut trace = TraceWriter::create(&folder.path("trace.jsonl"))?;
     let begun = Instant::now();
-    let run = watch(&task, &mut trace, &mut progress, &interrupt)?;
+    let run = watch(&task, &mut trace, &progress, &interrupt)?;
     interrupt.done();
     let seconds = begun.elapsed().as_secs_f64();
     let hash = trace.finish(&run.map)?;
@@ -61,16 +55,16 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
 
 /// What is to be done, what there is to say about the world, and what tells that from others.
 fn task(arguments: &Explore) -> Result<(Task, Remarks, Vec<u8>)> {
-    let (config, name) = input::config(arguments.config.as_deref())?;
+    let (config, name) = files::config(arguments.config.as_deref(), built_in::B21R)?;
     let config = arguments.settings.apply(overridden(config, arguments))?;
-    let read = world_file::read(&arguments.world, config.sonar.surface)?;
+    let read = files::read(&arguments.world, config.sonar.surface)?;
     let WorldFile { world, remarks, bytes } = read;
     let limits = Limits {
         while_driving: arguments.while_driving,
         max_scans: arguments.max_scans.map(|most| most.get()),
     };
     let places = ((&world, arguments.world.as_path()), (&config, name.as_path()));
-    let mission = input::mission(places.0, places.1, arguments.start, limits)?;
+    let mission = files::mission(places.0, places.1, arguments.start, limits)?;
     let thresholds = arguments.safe_map.thresholds(&mission.config.planner);
     let reader = arguments.read_out.load(mission.config.model.bins)?;
     let experiment = Experiment { mission, sonar: config.sonar, seed: arguments.seed };
@@ -97,8 +91,8 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
     if let Some(out) = out {
         return Ok(out.clone());
     }
-    let (default, _) = input::config(None)?;
-    let (named, _) = input::config(config.as_deref())?;
+    let (default, _) = files::config(None, built_in::B21R)?;
+    let (named, _) = files::config(config.as_deref(), built_in::B21R)?;
     let other = config.as_deref().filter(|_| named != default);
     let finer = resolution.and_then(|resolution| output::unlike(resolution, named.resolution));
     let start = start.map(|start| {
@@ -137,7 +131,7 @@ fn run_line(task: &Task, world_bytes: Vec<u8>, read_out: Option<&Path>) -> Resul
 fn watch(
     task: &Task,
     trace: &mut TraceWriter,
-    progress: &mut Progress,
+    progress: &Progress,
     interrupt: &Interrupt,
 ) -> Result<Run> {
     let Task { world, experiment, .. } = task;
@@ -162,19 +156,6 @@ fn exit_code(ending: Ending) -> u8 {
     }
 }
 
-/// An ending as a user reads it.
-pub(crate) fn in_words(ending: Ending) -> &'static str {
-    match ending {
-        Ending::Explored => "explored: nothing is open",
-        Ending::BudgetSpent => "the budget of scans is spent, and something is still open",
-        Ending::StartBlocked => "nothing is open, but the robot could not leave its start",
-        Ending::BoxedIn => "nothing is open, but the robot is boxed in where it stands",
-        Ending::NothingHeard => "nothing is open, but no sensor ever answered",
-        Ending::Interrupted => "interrupted",
-        Ending::RobotFailed => "the robot failed, and something may still be open",
-    }
-}
-
 /// What the numbers of the measured cells are.
 const MEASURED_LEGEND: &str = "  (mean log-likelihood of classes alike; of each class the log-likelihood [nats] and \
                                the error of the mode)";
@@ -187,7 +168,7 @@ fn report(written: &Written, counts: &MapCounts, folder: &Path) {
     let Written { summary, measured, read_out } = written;
     let percent = |share: f64| format!("{:.1} %", 100.0 * share);
     let Summary { world, strategy, update, .. } = summary;
-    say::line(format!("{world}, {strategy}, update {update}: {}", in_words(summary.ending)));
+    say::line(format!("{world}, {strategy}, update {update}: {}", summary.ending.in_words()));
     say::line(format!(
         "  {} scans, {} decisions, {:.1} m driven, {} bumps, {:.1} s",
         summary.scans, summary.decisions, summary.path_length_m, summary.bumps, summary.seconds

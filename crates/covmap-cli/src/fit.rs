@@ -1,16 +1,18 @@
 //! `fit`: the sensor model is fitted to the truth.
 
 use crate::arguments::Fit;
-use crate::fit_file::{FitFile, FitPlan, Source};
+use crate::fit_charts;
 use crate::fit_report::{self, Maps, Report};
-use crate::interrupt::{self, Interrupt};
-use crate::progress::Progress;
-use crate::{fit_charts, input, output, reliability_charts};
-use anyhow::{Result, anyhow};
-use covmap_fit::{Example, FitSettings, Fitted, SearchSettings, fit};
+use crate::output;
+use crate::terminal::Terminal;
+use crate::terminal::interrupt::{self, Interrupt};
+use crate::terminal::progress::Progress;
+use anyhow::Result;
 use covmap_io::{OutputFolder, write_json, write_ron};
 use covmap_lab::Config;
-use covmap_statistics::{stream, uniform};
+use covmap_lab::files;
+use covmap_lab::results::reliability;
+use covmap_lab::{FitPlan, Source};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -19,13 +21,14 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let plan = FitPlan::read(&arguments.file)?;
     let (file, config) = (&plan.file, &plan.begin.config);
     let folder = output::of_fit("fit", arguments, &plan)?;
-    let mut progress = Progress::new(arguments.quiet);
-    let examples = |sources: &[Source]| plan.examples(sources, (&progress, &interrupt));
+    let progress = Progress::new(arguments.quiet);
+    let terminal = Terminal { progress: &progress, interrupt: &interrupt };
+    let examples = |sources: &[Source]| plan.examples(sources, &terminal);
     let (training, held_out) = (examples(&file.training)?, examples(&file.held_out)?);
     if interrupt.done() {
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     }
-    let fitted = search(file, config, &training, &mut progress, &interrupt)?;
+    let fitted = plan.search(&training, &terminal)?;
     let stopped = interrupt.done();
     progress.say("fitting the read-out …");
     let models = (&config.model, &fitted.parameters);
@@ -47,45 +50,9 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     Ok(if stopped { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
 }
 
-pub(crate) fn search(
-    file: &FitFile,
-    config: &Config,
-    training: &[Example],
-    progress: &mut Progress,
-    interrupt: &Interrupt,
-) -> Result<Fitted> {
-    let settings = FitSettings {
-        weighting: file.weighting,
-        axes: file.axes.clone(),
-        starts: file.starts,
-        search: SearchSettings { evaluations: file.evaluations, ..SearchSettings::default() },
-    };
-    let mut random = stream(file.seed, "fit", 0);
-    let (mut count, mut best) = (0, f64::NEG_INFINITY);
-    let fitted = fit(
-        training,
-        &config.model,
-        &settings,
-        || uniform(&mut random),
-        |evaluation| {
-            count += 1;
-            best = evaluation.log_likelihood.unwrap_or(best).max(best);
-            progress.tell(|| {
-                format!(
-                    "search {} of {} · {count} evaluations · log-likelihood {best:.4} nats a cell",
-                    evaluation.start + 1,
-                    file.starts
-                )
-            });
-            interrupt.flow()
-        },
-    );
-    fitted.map_err(|error| anyhow!("the fit cannot begin: {error}"))
-}
-
 fn write(folder: &OutputFolder, config: &Config, report: &Report<'_>) -> Result<()> {
     let fitted = Config { model: report.after.clone(), ..config.clone() };
-    input::check(&fitted, Path::new("the fitted configuration"))?;
+    files::check(&fitted, Path::new("the fitted configuration"))?;
     let comment = report.provenance();
     write_ron(folder.path("config.ron"), &fitted, Some(&comment))?;
     write_ron(folder.path("read_out.ron"), &report.read_out, Some(&comment))?;
@@ -98,7 +65,7 @@ fn write(folder: &OutputFolder, config: &Config, report: &Report<'_>) -> Result<
     let (svg, png) = both("reliability");
     let bins = report.after.bins;
     let maps = [("as it is", &report.reliability), ("read out", &report.reliability_read_out)];
-    reliability_charts::figure(&report.checked_on(), &maps, bins).save(svg, png)?;
+    reliability::figure(&report.checked_on(), &maps, bins).save(svg, png)?;
     // Last: whoever finds it finds all the others.
     write_json(folder.path("fit.json"), report)?;
     Ok(())

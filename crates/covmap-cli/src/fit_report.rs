@@ -1,6 +1,6 @@
 //! What a fit came to: how the maps explain the truth before, after, and through the read-out.
 
-use crate::say;
+use crate::terminal::say;
 use anyhow::Result;
 use covmap::{CoverageMap, ReadOut};
 use covmap_fit::{

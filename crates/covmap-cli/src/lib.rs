@@ -1,8 +1,8 @@
 //! The program `covmap`: explores worlds, makes maps of logs, fits, compares, runs campaigns, and writes what
 //! came out.
 //!
-//! [`run`] is the whole program: `covmap` itself and `cargo xtask` call it. What computes is in the other
-//! crates; here are arguments, files, the terminal, the clock and Ctrl-C.
+//! [`run`] is the whole program, and [`run_with`] one with more commands, as `cargo xtask` is. What computes
+//! is in the other crates; here are arguments, files, the terminal, the clock and Ctrl-C.
 //!
 //! ```text
 //! cargo install --path crates/covmap-cli
@@ -10,99 +10,93 @@
 //! ```
 #![allow(clippy::print_stdout, reason = "a program talks to its user")]
 
+mod about;
 mod arguments;
-mod bench;
 mod beside;
+mod built_in;
 mod campaign;
-mod certificate_file;
 mod compare;
-mod csv_file;
+mod completions;
 mod explain;
 mod explain_picture;
 mod explore;
-mod figure;
-mod figures;
-mod file_kind;
 mod fit;
 mod fit_charts;
-mod fit_file;
 mod fit_report;
-mod input;
-mod interrupt;
 mod log;
 mod map;
 mod map_pictures;
 mod map_report;
-mod mapper;
-mod memory;
 mod model;
 mod output;
-mod paper;
-mod partial;
-mod pictures;
-mod progress;
 mod readings;
-mod recorded;
-mod reliability_charts;
-mod replay;
-mod results;
-mod run_path;
-mod say;
 mod survey;
-mod trace_file;
-mod trail;
+pub mod terminal;
 mod truth;
-mod way;
-mod world_file;
 
-use anyhow::anyhow;
-use arguments::{Arguments, Command};
+pub use arguments::{Command, Force, named_file};
+
+use anyhow::{Result, anyhow};
+use arguments::Arguments;
+use clap::Subcommand;
+use covmap_lab::memory;
 use std::io::ErrorKind;
 use std::process::ExitCode;
+use terminal::say;
 
 /// What the program ends with after bad input; clap ends with the same.
 const BAD_INPUT: u8 = 2;
 /// What a shell says of a program that was ended by a closed pipe.
 const CLOSED_PIPE: u8 = 141;
 
-/// Runs the program with what was typed after `name`, as which it calls itself: `covmap`, or
-/// `cargo xtask`.
+/// Runs the program with what was typed after `name`, as which it calls itself.
 pub fn run(name: &str) -> ExitCode {
+    run_with(name, Command::run)
+}
+
+/// Runs a program with commands of its own; `act` does what one says.
+pub fn run_with<C: Subcommand>(name: &str, act: impl FnOnce(C) -> Result<ExitCode>) -> ExitCode {
     let Arguments { command, memory } = match Arguments::typed(name) {
         Ok(arguments) => arguments,
         Err(told) => return ended(say::clap(told)),
     };
     memory::allow(memory.memory);
-    let done = match command {
-        Command::Explore(arguments) => explore::run(&arguments),
-        Command::Explain(arguments) => explain::run(&arguments),
-        Command::Map(arguments) => map::run(&arguments),
-        Command::Log(arguments) => log::run(&arguments),
-        Command::Truth(arguments) => truth::run(&arguments),
-        Command::Model(arguments) => model::run(&arguments),
-        Command::Fit(arguments) => fit::run(&arguments),
-        Command::Compare(arguments) => compare::run(&arguments),
-        Command::Survey(arguments) => survey::run(&arguments),
-        Command::Readings(arguments) => readings::run(&arguments),
-        Command::Beside(arguments) => beside::run(&arguments),
-        Command::Bench(arguments) => bench::run(&arguments),
-        Command::Figure(arguments) => figure::run(&arguments),
-        Command::Table(arguments) => figure::table(&arguments),
-        Command::Paper(arguments) => paper::run(&arguments),
-        Command::Campaign(arguments) => campaign::command(&arguments),
-        Command::Collect(arguments) => campaign::collect(&arguments),
-    };
-    ended(done.unwrap_or_else(|error| {
+    ended(act(command).unwrap_or_else(|error| {
         say::error(&error);
         ExitCode::from(BAD_INPUT)
     }))
+}
+
+impl Command {
+    /// Does what was typed.
+    ///
+    /// # Errors
+    /// In one sentence, which names the file if there is one.
+    pub fn run(self) -> Result<ExitCode> {
+        match self {
+            Self::Explore(arguments) => explore::run(&arguments),
+            Self::Explain(arguments) => explain::run(&arguments),
+            Self::Map(arguments) => map::run(&arguments),
+            Self::Log(arguments) => log::run(&arguments),
+            Self::Truth(arguments) => truth::run(&arguments),
+            Self::Model(arguments) => model::run(&arguments),
+            Self::Fit(arguments) => fit::run(&arguments),
+            Self::Compare(arguments) => compare::run(&arguments),
+            Self::Survey(arguments) => survey::run(&arguments),
+            Self::Readings(arguments) => readings::run(&arguments),
+            Self::Beside(arguments) => beside::run(&arguments),
+            Self::Campaign(arguments) => campaign::run(&arguments),
+            Self::Collect(arguments) => campaign::collect(&arguments),
+            Self::Completions(arguments) => completions::run(&arguments),
+        }
+    }
 }
 
 /// How the program ends, unless what it said could not be written.
 fn ended(code: ExitCode) -> ExitCode {
     match say::finish() {
         Ok(()) => code,
-        // Whoever closed the pipe does not want to read on, and knows.
+        // Nobody reads on, and that is known.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => ExitCode::from(CLOSED_PIPE),
         Err(error) => {
             say::error(&anyhow!("the standard output cannot be written: {error}"));

@@ -1,14 +1,15 @@
 //! `log`: the scans of a run as a log of CARMEN.
 
+use crate::about::about;
 use crate::arguments::Log;
-use crate::input::about;
-use crate::run_path::RunPath;
-use crate::trace_file::{self, read_header};
-use crate::{output, say};
+use crate::output;
+use crate::terminal::say;
 use anyhow::Result;
 use covmap_explore::Event;
 use covmap_io::{FileError, NewFile, read_json_lines};
+use covmap_lab::RunPath;
 use covmap_lab::TraceHeader;
+use covmap_lab::{in_folder, read_header};
 use covmap_log::{CarmenWriter, CarmenWriterError};
 use covmap_sonar::SonarRing;
 use std::path::Path;
@@ -16,7 +17,7 @@ use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Log) -> Result<ExitCode> {
     let Log { dir, out, force } = arguments;
-    let trace = trace_file::in_folder(dir)?;
+    let trace = in_folder(dir)?;
     let replace = output::replace(out, *force, &[&trace])?;
     let header = read_header(&trace)?;
     let (ring, _) = header.config.build().map_err(about(&trace))?;

@@ -1,16 +1,23 @@
 //! `map`: the map of what a real robot recorded.
 
-use crate::arguments::{Map, Reader, SensorName};
-use crate::input::about;
-use crate::interrupt::{self, Interrupt};
+use crate::about::about;
+use crate::arguments::{Map, SensorName};
+use crate::built_in;
 use crate::map_pictures::MapPictures;
-use crate::mapper::{Log, Mapper, Stride, Survey};
-use crate::progress::Progress;
-use crate::{input, map_report, memory, output, results};
+use crate::map_report;
+use crate::output;
+use crate::terminal::Terminal;
+use crate::terminal::interrupt::{self, Interrupt};
+use crate::terminal::progress::Progress;
 use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_io::{MapCounts, OutputFolder, write_json};
 use covmap_lab::Config;
+use covmap_lab::files;
+use covmap_lab::memory;
+use covmap_lab::results;
+use covmap_lab::{LabError, Reader};
+use covmap_lab::{Log, LogOverview, Mapper, Stride};
 use covmap_log::{LogOptions, Readings, Sensor, SensorAccount, Skipped};
 use covmap_model::{Footprint, FootprintRule, SensorModel};
 use covmap_plan::BodyEvidence;
@@ -71,8 +78,9 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
     let config = config(arguments)?;
     let log = log(arguments, &config)?;
-    let mut progress = Progress::new(arguments.quiet);
-    let Some(survey) = log.survey(&mut progress, &interrupt)? else {
+    let progress = Progress::new(arguments.quiet);
+    let terminal = Terminal { progress: &progress, interrupt: &interrupt };
+    let Some(survey) = log.overview(&terminal)? else {
         return Ok(interrupt::EXIT_CODE.into());
     };
     interrupt.done();
@@ -90,7 +98,7 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     let inputs: Vec<&Path> = inputs.into_iter().flatten().map(PathBuf::as_path).collect();
     let folder = output::folder(&folder_name(arguments)?, &run, arguments.force, &inputs)?;
     let mapper = Mapper::new((grid, config.model.bins), models, stride, body)?;
-    let mapper = log.map(mapper, &mut progress, &interrupt)?;
+    let mapper = log.map(mapper, &terminal)?;
     interrupt.done();
     progress.say("drawing the map …");
     let seconds = begun.elapsed().as_secs_f64();
@@ -108,12 +116,12 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
 }
 
 /// The configuration as its file has it.
-fn named_config(arguments: &Map) -> Result<(Config, PathBuf)> {
+fn named_config(arguments: &Map) -> Result<(Config, PathBuf), LabError> {
     let file = arguments.config.as_deref();
     match arguments.sensor {
-        SensorName::Laser => input::laser_config(file),
-        SensorName::Sonar if arguments.log.is_dir() => input::folder_config(file),
-        SensorName::Sonar => input::config(file),
+        SensorName::Laser => files::config(file, built_in::LASER),
+        SensorName::Sonar if arguments.log.is_dir() => files::config(file, built_in::SONAR8),
+        SensorName::Sonar => files::config(file, built_in::B21R),
     }
 }
 
@@ -123,7 +131,7 @@ fn config(arguments: &Map) -> Result<Config> {
         config.resolution = resolution;
     }
     let config = arguments.settings.apply(config)?;
-    input::check(&config, &name)?;
+    files::check(&config, &name)?;
     Ok(config)
 }
 
@@ -144,7 +152,7 @@ type Models = Vec<(Arc<SonarRing>, SensorModel)>;
 fn models(
     config: &Config,
     sensor: SensorName,
-    survey: &Survey,
+    survey: &LogOverview,
 ) -> Result<(Models, Option<String>)> {
     let (mut models, mut remarks) = (Vec::new(), None);
     for ring in &survey.rings {
@@ -238,7 +246,7 @@ fn run_line(arguments: &Map, config: &Config) -> Result<String> {
 
 fn summary(
     arguments: &Map,
-    (survey, remark): (&Survey, Option<String>),
+    (survey, remark): (&LogOverview, Option<String>),
     (mapper, map): (&Mapper, &CoverageMap),
     seconds: f64,
 ) -> MapSummary {

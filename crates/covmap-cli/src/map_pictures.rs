@@ -1,10 +1,10 @@
 //! The pictures of the map of a log.
 
 use crate::map::MapSummary;
-use crate::mapper::Mapper;
-use crate::pictures::{draw_coverage, draw_entropy, draw_occupancy, draw_path};
 use covmap::CoverageMap;
 use covmap_draw::Picture;
+use covmap_lab::Mapper;
+use covmap_lab::results::{draw_coverage, draw_entropy, draw_occupancy, draw_path};
 use nalgebra::Point2;
 
 /// All that the pictures show.

@@ -2,9 +2,10 @@
 
 use crate::arguments::Map;
 use crate::map::MapSummary;
-use crate::mapper::Survey;
-use crate::{csv_file, say};
-use anyhow::Result;
+use crate::terminal::say;
+use covmap_io::FileError;
+use covmap_io::csv;
+use covmap_lab::LogOverview;
 use covmap_log::{Account, Readings, SensorAccount};
 use std::io::Write;
 use std::path::Path;
@@ -26,8 +27,8 @@ pub(crate) fn taken_from(account: &Account) -> Vec<String> {
 }
 
 /// Writes how many readings of each kind every sensor has.
-pub(crate) fn write_readings(path: &Path, survey: &Survey) -> Result<()> {
-    csv_file::write(path, |out| {
+pub(crate) fn write_readings(path: &Path, survey: &LogOverview) -> Result<(), FileError> {
+    csv::write(path, |out| {
         writeln!(out, "lines,sensor,echoes,no_echoes,missing,skipped")?;
         for sensor in &survey.account.sensors {
             for (i, readings) in sensor.readings.iter().enumerate() {

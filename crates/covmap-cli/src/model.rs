@@ -1,17 +1,19 @@
 //! `model`: what the sensor model makes of one echo, Fig. 3.
 
 use crate::arguments::Model;
-use crate::{input, output, say};
+use crate::built_in;
+use crate::output;
+use crate::terminal::say;
 use anyhow::{Result, bail};
 use covmap_io::write_file;
-use covmap_model::{Outcome, SensorModel};
-use std::fmt::Write;
+use covmap_lab::echo_table;
+use covmap_lab::files;
 use std::path::Path;
 use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Model) -> Result<ExitCode> {
-    let (config, name) = input::config(arguments.config.as_deref())?;
-    let model = input::check(&config, &name)?;
+    let (config, name) = files::config(arguments.config.as_deref(), built_in::B21R)?;
+    let model = files::check(&config, &name)?;
     let range = arguments.range;
     let usable = model.parameters().usable_range;
     if range > usable {
@@ -19,34 +21,9 @@ pub(crate) fn run(arguments: &Model) -> Result<ExitCode> {
     }
     let inputs: Vec<&Path> = arguments.config.as_deref().into_iter().collect();
     let replace = output::replace(&arguments.out, arguments.force, &inputs)?;
-    let (table, distances) = table(&model, range);
+    let (table, distances) = echo_table(&model, range);
     write_file(&arguments.out, table.as_bytes(), replace)?;
     let bins = model.parameters().bins;
     say::line(format!("{}: {distances} distances, {bins} bins", arguments.out.display()));
     Ok(ExitCode::SUCCESS)
-}
-
-/// What the model makes of an echo, and for how many distances.
-pub(crate) fn table(model: &SensorModel, range: f64) -> (String, usize) {
-    let distances = cell_distances(model, range);
-    let bins = model.parameters().bins;
-    let mut table = "cell_distance,coverage,probability\n".to_owned();
-    let mut column = vec![0.0; bins];
-    for distance in &distances {
-        model.evidence(*distance, Outcome::Echo(range), &mut column);
-        for (bin, probability) in column.iter().enumerate() {
-            let coverage = covmap::bin_coverage(bin, bins);
-            let _ = writeln!(table, "{distance:?},{coverage:?},{probability:?}");
-        }
-    }
-    (table, distances.len())
-}
-
-/// From r/2 to .20 m behind the end cell, as in Fig. 3, in steps of r/10 \[m\]; farther if
-/// the echo updates cells farther behind.
-pub(crate) fn cell_distances(model: &SensorModel, range: f64) -> Vec<f64> {
-    let resolution = model.resolution();
-    let behind = model.parameters().update.behind().max(0.20);
-    let last = range + 0.5 * resolution + behind + 1e-9 * resolution;
-    (5u32..).map(|i| f64::from(i) * resolution / 10.0).take_while(|d| *d <= last).collect()
 }

@@ -1,10 +1,10 @@
 //! Where results go, and that nothing of the user's is lost there.
 
 use crate::arguments::{Fit, Force};
-use crate::campaign::Digest;
-use crate::fit_file::FitPlan;
 use anyhow::{Result, bail};
-use covmap_io::{OutputFolder, Replace, shown};
+use covmap_io::Digest;
+use covmap_io::{FileError, OutputFolder, Replace, shown};
+use covmap_lab::FitPlan;
 use std::path::{Path, PathBuf};
 
 /// A run in words, and all that its results are a function of as a hash.
@@ -64,7 +64,7 @@ fn inside<'a>(folder: &Path, inputs: &[&'a Path]) -> Option<&'a Path> {
 }
 
 /// The hash of a log, or of the files that a folder has of one.
-pub(crate) fn log_digest(log: &Path) -> Result<Digest> {
+pub(crate) fn log_digest(log: &Path) -> Result<Digest, FileError> {
     let parts = ["od.txt", "sonar.txt", "laser.txt"].map(|name| log.join(name));
     let files = if log.is_dir() { &parts[..] } else { &[log.to_owned()] };
     files.iter().filter(|file| file.exists()).try_fold(Digest::default(), Digest::with_file)

@@ -3,18 +3,22 @@
 mod knobs;
 mod table;
 
+use crate::about::about;
 use crate::arguments::Readings as Arguments;
+use crate::built_in;
 use crate::fit_report::INTERRUPTED;
-use crate::input::{self, about};
-use crate::interrupt::{self, Interrupt};
-use crate::mapper::Stride;
-use crate::progress::Progress;
-use crate::recorded::{Frames, frames};
-use crate::{csv_file, output, say};
+use crate::output;
+use crate::terminal::interrupt::{self, Interrupt};
+use crate::terminal::progress::Progress;
+use crate::terminal::say;
 use anyhow::{Result, bail};
 use covmap_fit::{SearchSettings, maximise};
+use covmap_io::csv;
 use covmap_io::{read_ron, write_ron};
 use covmap_lab::Config;
+use covmap_lab::Stride;
+use covmap_lab::files;
+use covmap_lab::{Frames, frames};
 use covmap_log::Sensor;
 use covmap_sonar::{Range, Scan, SonarRing};
 use covmap_statistics::stream;
@@ -61,8 +65,8 @@ struct Recording {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let interrupt = Interrupt::listen()?;
-    let (config, name) = input::folder_config(arguments.config.as_deref())?;
-    input::check(&config, &name)?;
+    let (config, name) = files::config(arguments.config.as_deref(), built_in::SONAR8)?;
+    files::check(&config, &name)?;
     let recording = Recording::read(arguments, &config)?;
     let inputs = [
         Some(&arguments.log),
@@ -90,7 +94,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         write_ron(folder.path("config.ron"), &fitted, Some(&comment))?;
         rows.push(("fitted", simulated));
     }
-    csv_file::write(&folder.path("readings.csv"), |out| {
+    csv::write(&folder.path("readings.csv"), |out| {
         writeln!(out, "source,{}", Table::HEADING)?;
         rows.iter().try_for_each(|(name, table)| {
             table.lines(",").iter().try_for_each(|line| writeln!(out, "{name},{line}"))
@@ -138,7 +142,7 @@ fn fit(
     real: &Table,
     interrupt: &Interrupt,
 ) -> Result<Config> {
-    let mut progress = Progress::new(arguments.quiet);
+    let progress = Progress::new(arguments.quiet);
     let turned = |place: &[f64]| {
         let mut config = config.clone();
         KNOBS.iter().zip(place).for_each(|(knob, at)| knob.set(&mut config, *at));
@@ -152,7 +156,7 @@ fn fit(
     let found = maximise(&start, &settings, value, |step| {
         done += 1;
         let value = step.value.unwrap_or(f64::NEG_INFINITY);
-        progress.tell(|| format!("{done} evaluations · {value:.4} nats"));
+        progress.tell(&format_args!("{done} evaluations · {value:.4} nats"));
         interrupt.flow()
     });
     progress.finish();

@@ -1,14 +1,15 @@
 //! `survey`: the walls of a building, from the laser scans of a log.
 
+use crate::about::about;
 use crate::arguments::Survey as Arguments;
-use crate::input::about;
 use crate::map_report::taken_from;
-use crate::recorded::{Frames, frames};
-use crate::{output, say};
+use crate::output;
+use crate::terminal::say;
 use anyhow::{Result, bail};
 use covmap::{Grid, Raster};
 use covmap_draw::{Marker, Picture, Rgb, coverage_color};
 use covmap_io::{to_ron, write_file};
+use covmap_lab::{Frames, frames};
 use covmap_log::Sensor;
 use covmap_sonar::{Range, SonarRing};
 use covmap_survey::{Evidence, Survey, SurveyParameters, survey};

@@ -1,10 +1,12 @@
 //! `truth`: the exact coverage of every cell.
 
+use crate::about::about;
 use crate::arguments::Truth;
-use crate::input::about;
-use crate::world_file::{self, WorldFile};
-use crate::{csv_file, output, say};
+use crate::output;
+use crate::terminal::say;
 use anyhow::Result;
+use covmap_io::csv;
+use covmap_lab::files::{self, WorldFile};
 use covmap_world::Surface;
 use std::io::Write;
 use std::process::ExitCode;
@@ -13,10 +15,10 @@ pub(crate) fn run(arguments: &Truth) -> Result<ExitCode> {
     let Truth { world: file, resolution, out, force } = arguments;
     let replace = output::replace(out, *force, &[file])?;
     // Coverage does not depend on how a surface answers.
-    let WorldFile { world, remarks, .. } = world_file::read(file, Surface::Rough)?;
+    let WorldFile { world, remarks, .. } = files::read(file, Surface::Rough)?;
     let grid = world.grid(*resolution).map_err(about(file))?;
     let coverage = world.coverage(&grid);
-    csv_file::write_to(out, replace, |table| {
+    csv::write_to(out, replace, |table| {
         writeln!(table, "x,y,coverage")?;
         for (cell, coverage) in coverage.iter() {
             let center = grid.center(cell);
@@ -25,7 +27,7 @@ pub(crate) fn run(arguments: &Truth) -> Result<ExitCode> {
         }
         Ok(())
     })?;
-    remarks.say();
+    say::remarks(&remarks);
     say::line(format!("{}: {} × {} cells", out.display(), grid.width(), grid.height()));
     Ok(ExitCode::SUCCESS)
 }

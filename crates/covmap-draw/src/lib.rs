@@ -18,7 +18,11 @@
 //! # Ok::<(), covmap_io::FileError>(())
 //! ```
 mod chart;
+mod folder;
 mod picture;
+mod trail;
 pub use chart::{Chart, ChartAxis, ChartPoint, Figure, HeatMap, Panel, Series};
 pub use chart::{Drawing, TextAnchor};
+pub use folder::FigureFolder;
 pub use picture::{ColorMap, Key, Marker, Picture, Rgb, coverage_color};
+pub use trail::Trail;

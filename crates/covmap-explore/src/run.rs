@@ -30,6 +30,21 @@ pub enum Ending {
     RobotFailed,
 }
 
+impl Ending {
+    /// The ending as a user reads it.
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Explored => "explored: nothing is open",
+            Self::BudgetSpent => "the budget of scans is spent, and something is still open",
+            Self::StartBlocked => "nothing is open, but the robot could not leave its start",
+            Self::BoxedIn => "nothing is open, but the robot is boxed in where it stands",
+            Self::NothingHeard => "nothing is open, but no sensor ever answered",
+            Self::Interrupted => "interrupted",
+            Self::RobotFailed => "the robot failed, and something may still be open",
+        }
+    }
+}
+
 /// What a run came to.
 #[derive(Debug, Clone)]
 pub struct Run {

@@ -16,6 +16,8 @@
 //! results.finish()?;
 //! # Ok::<(), covmap_io::FileError>(())
 //! ```
+pub mod csv;
+mod digest;
 mod error;
 mod escaped;
 mod json;
@@ -29,6 +31,7 @@ mod read;
 mod ron_file;
 mod shared_folder;
 mod signature;
+pub use digest::{Digest, checksum};
 pub use error::FileError;
 pub use escaped::{escaped, shown};
 pub use json::{read_json, write_json};
@@ -37,7 +40,7 @@ pub use map_server::{ImageError, MapAreas, MapCell, MapServerError, MapServerMap
 pub use map_server::{MapCounts, MapThresholds, load_map_server, save_map_server};
 pub use new_file::{NewFile, Replace, write_file};
 pub use output_folder::OutputFolder;
-pub use read::{MAX_FILE, open_file, open_input, read_beginning, read_bytes, read_text};
+pub use read::{MAX_FILE, find, open_file, open_input, read_beginning, read_bytes, read_text};
 pub use ron_file::{parse_ron, read_ron, to_ron, write_ron};
 pub use shared_folder::SharedFolder;
 pub use signature::{Signature, signature};

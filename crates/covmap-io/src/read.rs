@@ -21,6 +21,15 @@ pub fn open_input(path: impl AsRef<Path>) -> Result<File, FileError> {
     open_file(path).map_err(FileError::io(path, "read"))
 }
 
+/// Finds out whether something is there, a file or a folder.
+///
+/// # Errors
+/// If there is nothing.
+pub fn find(path: impl AsRef<Path>) -> Result<(), FileError> {
+    let path = path.as_ref();
+    std::fs::metadata(path).map(drop).map_err(FileError::io(path, "read"))
+}
+
 /// As [`open_input`], with the error of the system; [`io::ErrorKind::Other`] means that it is no
 /// file.
 ///

@@ -65,11 +65,6 @@ pub(super) fn crates() -> Vec<String> {
     folders.map(|entry| entry.file_name().into_string().unwrap().replace('-', "_")).collect()
 }
 
-/// Whether a file declares a function or constant.
-pub(super) fn declares(file: &Path, name: &str) -> bool {
-    parse(&fs::read_to_string(file).unwrap()).items.iter().any(|item| item.name == name)
-}
-
 impl Module {
     fn read(file: &Path, folder: &Path) -> Option<Self> {
         let source = parse(&fs::read_to_string(file).ok()?);

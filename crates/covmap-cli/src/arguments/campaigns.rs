@@ -1,8 +1,8 @@
 //! What can be typed for campaigns.
 
 use super::values::named_file;
-use crate::campaign::Shard;
 use clap::Args;
+use covmap_campaign::Shard;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
@@ -35,8 +35,9 @@ Example:
   cargo xtask collect out/fig7-1 out/fig7-2 out/fig7-3 --out out/fig7
 ";
 
+/// What can be typed for `campaign`.
 #[derive(Debug, Args)]
-pub(crate) struct Campaign {
+pub struct Campaign {
     /// What is run (.ron)
     #[arg(value_name = "CAMPAIGN.ron")]
     pub(crate) file: PathBuf,
@@ -60,8 +61,9 @@ pub(crate) struct Campaign {
     pub(crate) quiet: bool,
 }
 
+/// What can be typed for `collect`.
 #[derive(Debug, Args)]
-pub(crate) struct Collect {
+pub struct Collect {
     /// Folders that `campaign` wrote
     #[arg(value_name = "DIR", required = true)]
     pub(crate) dirs: Vec<PathBuf>,

@@ -42,7 +42,7 @@ Example:
 
 /// Whether results may be replaced that are not the same.
 #[derive(Debug, Clone, Copy, Default, Args)]
-pub(crate) struct Force {
+pub struct Force {
     /// Replace what is there: a file that holds something else, a folder of another run of covmap
     #[arg(long)]
     force: bool,
@@ -50,13 +50,14 @@ pub(crate) struct Force {
 
 impl Force {
     /// What may be replaced.
-    pub(crate) fn replace(self) -> Replace {
+    pub fn replace(self) -> Replace {
         Replace::if_forced(self.force)
     }
 }
 
+/// What can be typed for `beside`.
 #[derive(Debug, Args)]
-pub(crate) struct Beside {
+pub struct Beside {
     /// Folders that `explore` wrote
     #[arg(value_name = "RUN", required = true)]
     pub(crate) runs: Vec<PathBuf>,
@@ -70,8 +71,9 @@ pub(crate) struct Beside {
     pub(crate) quiet: bool,
 }
 
+/// What can be typed for `log`.
 #[derive(Debug, Args)]
-pub(crate) struct Log {
+pub struct Log {
     /// The folder that `explore` wrote (or the DIR.partial that it is writing)
     pub(crate) dir: PathBuf,
     /// The log that is written
@@ -81,8 +83,9 @@ pub(crate) struct Log {
     pub(crate) force: Force,
 }
 
+/// What can be typed for `truth`.
 #[derive(Debug, Args)]
-pub(crate) struct Truth {
+pub struct Truth {
     /// A scenario (.ron), or a map of ROS map_server (.yaml with its .pgm or .png)
     pub(crate) world: PathBuf,
     /// Side of a cell in metres
@@ -95,8 +98,9 @@ pub(crate) struct Truth {
     pub(crate) force: Force,
 }
 
+/// What can be typed for `model`.
 #[derive(Debug, Args)]
-pub(crate) struct Model {
+pub struct Model {
     /// Robot, sonar, sensor model and planner [default: configs/b21r.ron, built in]
     #[arg(long, value_name = "FILE")]
     pub(crate) config: Option<PathBuf>,

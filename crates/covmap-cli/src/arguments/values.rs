@@ -61,7 +61,11 @@ pub(super) fn place(text: &str) -> Result<Point2<f64>, String> {
     }
 }
 
-pub(super) fn named_file(text: &str) -> Result<(String, PathBuf), String> {
+/// A name and the file that it is of, typed as NAME=FILE.
+///
+/// # Errors
+/// If there is no name.
+pub fn named_file(text: &str) -> Result<(String, PathBuf), String> {
     let (name, file) = text.split_once('=').ok_or("it is NAME=FILE")?;
     Ok((name.to_owned(), file.into()))
 }

@@ -1,14 +1,15 @@
 //! The program as a user types it.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
+/// The program that is typed.
+const PROGRAM: &str = env!("CARGO_BIN_EXE_covmap");
+
 mod bad_input;
 mod bad_maps;
-mod bench;
 mod beside;
 mod campaign;
 mod explain;
 mod explore;
-mod figures;
 mod fit;
 mod interrupt;
 mod logs_as_they_are;

@@ -32,7 +32,7 @@ impl Shell {
 
     /// The command of a line; words are separated by blanks.
     pub(crate) fn command(&self, line: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_covmap"));
+        let mut command = Command::new(crate::PROGRAM);
         command.args(line.split_whitespace()).current_dir(self.folder.path());
         command
     }
@@ -92,7 +92,8 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
 
 /// A file of the repository.
 pub(crate) fn shipped(name: &str) -> String {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).unwrap();
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
+    let root = root.into_iter().find(|folder| folder.join("configs").exists()).unwrap();
     root.join(name).to_str().unwrap().to_owned()
 }
 

@@ -1,0 +1,102 @@
+//! What several machines did becomes one campaign.
+
+use crate::error::{FolderFault, Result, of_folder};
+use crate::folder::{self, Folder, Manifest, Planned, Recorded};
+use crate::record::RunRecord;
+use crate::tables;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What was collected.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Collected {
+    /// What the campaign is called.
+    pub name: String,
+    /// The number of runs that are recorded now.
+    pub recorded: usize,
+    /// The number of runs that the campaign has.
+    pub of: usize,
+    /// Files of runs that are damaged, and nowhere whole.
+    pub damaged: Vec<PathBuf>,
+}
+
+/// Copies the runs of several folders of one campaign into one, and writes its tables.
+///
+/// # Errors
+/// If a folder is of no campaign, of another one, or of another version; or if something cannot be written.
+///
+/// # Panics
+/// If there is no folder.
+pub fn collect(dirs: &[PathBuf], out: &Path) -> Result<Collected> {
+    let manifest = manifest(dirs)?;
+    if let Some(present) = Manifest::read(out)? {
+        check_version((out, &present), (&dirs[0], &manifest))?;
+    }
+    // Which folder has a run; the first of several, since all are the same.
+    let mut found: BTreeMap<&str, &Path> = BTreeMap::new();
+    let mut damaged: BTreeMap<&str, PathBuf> = BTreeMap::new();
+    for dir in dirs {
+        for planned in &manifest.runs {
+            match folder::read(dir, planned, true) {
+                Recorded::Whole(_) => {
+                    found.entry(&planned.id).or_insert(dir);
+                }
+                Recorded::Damaged(file) => {
+                    damaged.insert(&planned.id, file);
+                }
+                Recorded::Missing => {}
+            }
+        }
+    }
+    damaged.retain(|id, _| !found.contains_key(id));
+    let folder = Folder::open(out, &manifest)?;
+    tables::remove(out)?;
+    for (id, dir) in found.iter().filter(|(_, dir)| **dir != out) {
+        folder::copy(dir, &folder, id)?;
+    }
+    let runs: Vec<&Planned> = manifest.runs.iter().collect();
+    let recorded = folder::read_all(out, &runs, false);
+    let records: Vec<RunRecord> = recorded.into_iter().filter_map(Recorded::whole).collect();
+    tables::write(out, &manifest.metrics, &records, manifest.runs.len())?;
+    Ok(Collected {
+        name: manifest.name,
+        recorded: records.len(),
+        of: manifest.runs.len(),
+        damaged: damaged.into_values().collect(),
+    })
+}
+
+/// The campaign of which all folders are.
+fn manifest(dirs: &[PathBuf]) -> Result<Manifest> {
+    let read =
+        |dir: &PathBuf| Manifest::read(dir)?.ok_or_else(|| of_folder(dir, FolderFault::None));
+    let first = read(&dirs[0])?;
+    for dir in &dirs[1..] {
+        let other = read(dir)?;
+        if !other.is_campaign(&first) {
+            let fault = FolderFault::Differs {
+                name: other.name,
+                first: dirs[0].clone(),
+                first_name: first.name,
+            };
+            return Err(of_folder(dir, fault));
+        }
+        check_version((dir, &other), (&dirs[0], &first))?;
+    }
+    Ok(first)
+}
+
+fn check_version(
+    (dir, other): (&Path, &Manifest),
+    (first_dir, first): (&Path, &Manifest),
+) -> Result<()> {
+    if other.version == first.version {
+        return Ok(());
+    }
+    let fault = FolderFault::OtherVersion {
+        version: other.version.clone(),
+        first: first_dir.to_owned(),
+        first_version: first.version.clone(),
+    };
+    Err(of_folder(dir, fault))
+}

@@ -1,0 +1,50 @@
+//! Campaigns: worlds × settings × strategies × starts × seeds, run in parallel and recorded run by run.
+//!
+//! A [`Campaign`] is read from its file, [`run`] does what is not recorded yet, and [`collect()`] joins what
+//! several machines did. Every run is a function of its [`RunKey`], the files that it names, and the
+//! program, [`VERSION`]; none of these is ever mixed with another.
+//!
+//! This crate knows nothing of terminals and arguments.
+//!
+//! # Units
+//! Metres and seconds; degrees in files.
+//!
+//! ```no_run
+//! use covmap_campaign::{Campaign, Options, Shard, run};
+//! use std::num::NonZeroUsize;
+//! use std::path::Path;
+//!
+//! let campaign = Campaign::read(Path::new("configs/fig7.ron"))?;
+//! let out = Path::new("out/fig7");
+//! let options = Options { jobs: NonZeroUsize::MIN, shard: Shard::WHOLE, out, stop: &|| false };
+//! for record in run(&campaign, &options, &|step| println!("{step:?}"))? {
+//!     println!("{}: {:?} scans", record.key, record.values.get("scans"));
+//! }
+//! # Ok::<(), covmap_campaign::CampaignError>(())
+//! ```
+
+mod collect;
+mod error;
+mod execute;
+mod file;
+mod folder;
+mod parameters;
+mod paths;
+mod plan;
+mod pool;
+mod record;
+mod starts;
+mod tables;
+mod version;
+
+pub use collect::{Collected, collect};
+pub use error::{CampaignError, FolderFault, Result, StartsFault};
+pub use execute::NUMBERS;
+pub use file::{Campaign, NamedWorld, Seeds, Setting, Starts};
+pub use folder::{Manifest, Planned, load_paths};
+pub use parameters::{PARAMETERS, parameters};
+pub use paths::{Paths, driven};
+pub use plan::{Case, Job, Plan, Shard};
+pub use pool::{Options, Step, check, run};
+pub use record::{RunKey, RunRecord, Value};
+pub use version::VERSION;

@@ -1,0 +1,297 @@
+//! Why work with files of the laboratory fails.
+
+use crate::memory::MemoryError;
+use crate::{ConfigError, SetupError};
+use covmap::{GridError, MapError, ReadOutError};
+use covmap_explore::{MissionError, ParameterError};
+use covmap_fit::{AxisError, FitError};
+use covmap_io::{FileError, MapServerError, shown};
+use covmap_log::LogError;
+use covmap_model::ModelError;
+use covmap_plan::{PlannerError, StrategyError};
+use covmap_sonar::RingError;
+use covmap_survey::SurveyError;
+use covmap_world::WorldError;
+use std::path::{Path, PathBuf};
+
+/// Why something cannot be done, in one sentence that names the file if there is one.
+#[derive(Debug, thiserror::Error)]
+pub enum LabError {
+    /// A file cannot be read or written.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A map of map_server cannot be read or written.
+    #[error(transparent)]
+    MapServer(#[from] MapServerError),
+    /// A log cannot be read.
+    #[error("{error}{}", .other_sensor.map_or(String::new(), |name| format!("; try --sensor {name}")))]
+    Log {
+        /// Why.
+        error: LogError,
+        /// The sensor that the log has instead.
+        other_sensor: Option<&'static str>,
+    },
+    /// What a file says, or what it is, cannot be used.
+    #[error("{}: {fault}", shown(file))]
+    In {
+        /// The file or folder.
+        file: PathBuf,
+        /// Why.
+        fault: Fault,
+    },
+    /// Something that is not of one file cannot be used.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+}
+
+/// What is wrong with something, whatever file it is from.
+#[derive(Debug, thiserror::Error)]
+pub enum Fault {
+    /// A configuration.
+    #[error(transparent)]
+    Config(#[from] ConfigError),
+    /// What a robot is told of itself.
+    #[error(transparent)]
+    Parameter(#[from] ParameterError),
+    /// A mission in a world.
+    #[error(transparent)]
+    Setup(#[from] SetupError),
+    /// A mission.
+    #[error(transparent)]
+    Mission(#[from] MissionError),
+    /// A world.
+    #[error(transparent)]
+    World(#[from] WorldError),
+    /// A sensor model.
+    #[error(transparent)]
+    Model(#[from] ModelError),
+    /// A ring of sensors.
+    #[error(transparent)]
+    Ring(#[from] RingError),
+    /// Parameters of a planner.
+    #[error(transparent)]
+    Planner(#[from] PlannerError),
+    /// A strategy.
+    #[error(transparent)]
+    Strategy(#[from] StrategyError),
+    /// A grid.
+    #[error(transparent)]
+    Grid(#[from] GridError),
+    /// A coverage map.
+    #[error(transparent)]
+    Map(#[from] MapError),
+    /// A read-out.
+    #[error(transparent)]
+    ReadOut(#[from] ReadOutError),
+    /// A survey of a building.
+    #[error(transparent)]
+    Survey(#[from] SurveyError),
+    /// A free parameter of a fit.
+    #[error(transparent)]
+    Axis(#[from] AxisError),
+    /// A fit.
+    #[error("the fit cannot begin: {0}")]
+    Fit(#[from] FitError),
+    /// Too much memory.
+    #[error(transparent)]
+    Memory(#[from] MemoryError),
+    /// A part of a file.
+    #[error("{part}: {fault}")]
+    Part {
+        /// Which part.
+        part: &'static str,
+        /// What is wrong with it.
+        fault: Box<Fault>,
+    },
+    /// A length of too many cells: tables of them would fill the memory.
+    #[error(
+        "{field}: {length} m are more than {most} cells of {resolution} m; use a coarser resolution"
+    )]
+    TooManyCells {
+        /// The field of the configuration.
+        field: &'static str,
+        /// What it says \[m\].
+        length: f64,
+        /// The most cells that it may be.
+        most: f64,
+        /// Their side \[m\].
+        resolution: f64,
+    },
+    /// No area of a map is free.
+    #[error("nothing of the map is free ({0}); look at `negate` and at the thresholds")]
+    NothingFree(String),
+    /// The file is no world.
+    #[error("{0}")]
+    NoWorld(String),
+    /// The log has scans of too many different rings.
+    #[error("line {line}: more than {most} different sensors")]
+    ManySensors {
+        /// Where the one too many is.
+        line: usize,
+        /// The most that are read.
+        most: usize,
+    },
+    /// The log has no scan.
+    #[error("is empty")]
+    NoScans,
+    /// The file was changed while it was read.
+    #[error("was changed while it was read")]
+    Changed,
+    /// The log has more readings than are held in memory.
+    #[error(
+        "line {line}: more than {most} readings are not held at the same time; cut the log, or thin it out"
+    )]
+    ManyReadings {
+        /// Where the one too many is.
+        line: usize,
+        /// The most that are held.
+        most: usize,
+    },
+    /// The robot's path does not fit into a grid.
+    #[error("the robot was between ({:.1}, {:.1}) and ({:.1}, {:.1}): {error}", low.0, low.1, high.0, high.1)]
+    Extent {
+        /// The lower left corner of the robot's path \[m\].
+        low: (f64, f64),
+        /// The upper right corner \[m\].
+        high: (f64, f64),
+        /// Why.
+        error: GridError,
+    },
+    /// A number is out of its range.
+    #[error("{field}: {value} must lie in {low}..={high}")]
+    Range {
+        /// The field.
+        field: &'static str,
+        /// What it says.
+        value: usize,
+        /// The least.
+        low: usize,
+        /// The most.
+        high: usize,
+    },
+    /// A field must not be negative, or not be infinite.
+    #[error("{field} must be {must}")]
+    Number {
+        /// The field or fields.
+        field: &'static str,
+        /// What a number there must be.
+        must: &'static str,
+    },
+    /// A map of map_server is turned or shifted.
+    #[error("only scenarios can be turned and shifted")]
+    MapMoved,
+    /// A fit has nothing to fit to.
+    #[error("training needs at least one entry")]
+    NoTraining,
+    /// The explorer of a fit has another robot than what is fitted.
+    #[error(
+        "explorer: {} has another robot than {}; the model is of one ring of sensors",
+        shown(explorer),
+        shown(config)
+    )]
+    OtherRobot {
+        /// The file of the explorer.
+        explorer: PathBuf,
+        /// The file of what is fitted.
+        config: PathBuf,
+    },
+    /// The folder has no trace.
+    #[error("{0}")]
+    NoTrace(&'static str),
+    /// The trace has no such decision.
+    #[error("there is no decision {step}: the trace has {}", decisions_in_words(*.decisions))]
+    NoDecision {
+        /// The decision that was asked for, counted from 0.
+        step: usize,
+        /// The number of decisions.
+        decisions: usize,
+    },
+    /// The trace has no header.
+    #[error("the trace is empty")]
+    EmptyTrace,
+    /// The trace was written by another version.
+    #[error("a trace of version {found}; this covmap reads {read}")]
+    TraceVersion {
+        /// The version of the trace.
+        found: u32,
+        /// The version that is read.
+        read: u32,
+    },
+    /// A scan of a trace does not fit to the ring.
+    #[error("scan {number} has {ranges} ranges, but the ring has {beams} sensors")]
+    Ranges {
+        /// The number of the scan.
+        number: usize,
+        /// The number of its ranges.
+        ranges: usize,
+        /// The number of sensors.
+        beams: usize,
+    },
+    /// The replay of a trace differs from it.
+    #[error(
+        "line {line}: the replay differs from here on; the trace was changed, or written by another version of covmap"
+    )]
+    Differs {
+        /// The first line that differs.
+        line: usize,
+    },
+    /// A place is outside of the map.
+    #[error("({x}, {y}) is not in the map")]
+    NotInMap {
+        /// Where \[m\].
+        x: f64,
+        /// Where \[m\].
+        y: f64,
+    },
+    /// A file was written by another version.
+    #[error("another version wrote it")]
+    OtherVersion,
+}
+
+fn decisions_in_words(decisions: usize) -> String {
+    match decisions {
+        0 => "none at all".to_owned(),
+        1 => "one, number 0".to_owned(),
+        _ => format!("{decisions}, numbered 0 to {}", decisions - 1),
+    }
+}
+
+/// The result of work with files of the laboratory.
+pub type Result<T, E = LabError> = std::result::Result<T, E>;
+
+/// Says of which file a fault is.
+pub fn about<E: Into<Fault>>(file: &Path) -> impl Fn(E) -> LabError {
+    move |fault| LabError::In { file: file.to_owned(), fault: fault.into() }
+}
+
+impl From<LogError> for LabError {
+    fn from(error: LogError) -> Self {
+        Self::Log { error, other_sensor: None }
+    }
+}
+
+/// Faults of parts are faults of the laboratory, of no file.
+macro_rules! of_parts {
+    ($($part:ty),*) => {
+        $(impl From<$part> for LabError {
+            fn from(error: $part) -> Self {
+                Self::Fault(error.into())
+            }
+        })*
+    };
+}
+of_parts!(
+    ConfigError,
+    ParameterError,
+    SetupError,
+    MissionError,
+    WorldError,
+    ModelError,
+    RingError,
+    GridError,
+    MapError,
+    ReadOutError,
+    SurveyError,
+    MemoryError,
+    FitError
+);

@@ -1,0 +1,294 @@
+//! The file that says what is fitted to what, and the examples that it describes.
+
+use crate::error::{Fault, Result, about};
+use crate::files::{self, beside};
+use crate::recorded::Recorded;
+use crate::watch::Watch;
+use crate::{Config, Experiment, Truth};
+use covmap_explore::{Limits, Mission};
+use covmap_fit::{Axis, BodyRecord, Example, FitSettings, Fitted, SearchSettings, Weighting, fit};
+use covmap_io::read_ron;
+use covmap_plan::Strategy;
+use covmap_sonar::SonarRing;
+use covmap_statistics::{stream, uniform};
+use covmap_world::{Surface, World};
+use rayon::prelude::*;
+use serde::Deserialize;
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// Not more scans than this in one example, so that they fit into the memory.
+const MOST_SCANS: usize = 1_000_000;
+
+/// What is fitted to what. Files are named relative to this one.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitFile {
+    /// Robot, sonar, the model to begin with, and the planner.
+    pub config: PathBuf,
+    /// Who explores the simulated worlds; without it `config`. One explorer for several fits gives
+    /// them the same scans.
+    pub explorer: Option<PathBuf>,
+    /// The side of a cell where an example does not say another \[m\].
+    pub resolution: f64,
+    /// Seed of the starts.
+    pub seed: u64,
+    /// How many local searches.
+    pub starts: usize,
+    /// The most evaluations of each.
+    pub evaluations: usize,
+    /// What the likelihood is the mean of.
+    pub weighting: Weighting,
+    /// The free parameters.
+    pub axes: Vec<Axis>,
+    /// What is fitted to.
+    pub training: Vec<Source>,
+    /// What the result is checked on.
+    pub held_out: Vec<Source>,
+}
+
+/// Where an example comes from.
+#[derive(Debug, Deserialize)]
+pub enum Source {
+    /// A simulated exploration.
+    Simulated(Simulated),
+    /// The log of a robot, and a survey of where it was.
+    Recorded(Recorded),
+}
+
+/// A simulated exploration.
+#[derive(Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Simulated {
+    /// The scenario, or a map of map_server.
+    pub scenario: PathBuf,
+    /// The side of a cell \[m\]; without it that of the file.
+    pub resolution: Option<f64>,
+    /// The surface of everything in the world; without it what the scenario says, and outside of
+    /// it the configuration.
+    pub surface: Option<Surface>,
+    /// By how much it is turned \[rad\].
+    pub turn: f64,
+    /// By how much it is shifted \[m\].
+    pub shift: (f64, f64),
+    /// Who explores it.
+    pub strategy: Strategy,
+    /// How many scans; without it as many as it takes until the certificate.
+    pub scans: Option<usize>,
+    /// Seed of the noise.
+    pub seed: u64,
+}
+
+/// A configuration, and the file that it is from.
+#[derive(Debug, Clone)]
+pub struct Named {
+    /// The configuration.
+    pub config: Config,
+    /// Its file.
+    pub file: PathBuf,
+}
+
+/// A fit's file with the configurations that it names.
+#[derive(Debug)]
+pub struct FitPlan {
+    /// What the file says.
+    pub file: FitFile,
+    /// Where it is.
+    path: PathBuf,
+    /// What the fit begins with.
+    pub begin: Named,
+    /// Who explores.
+    pub explorer: Named,
+}
+
+impl Named {
+    fn read(path: &Path, named: &Path, resolution: f64) -> Result<Self> {
+        let file = beside(path, named);
+        let mut config: Config = read_ron(&file)?;
+        config.resolution = resolution;
+        files::check(&config, &file)?;
+        Ok(Self { config, file })
+    }
+}
+
+impl FitPlan {
+    /// Reads and checks the file, and what it names.
+    ///
+    /// # Errors
+    /// If anything is wrong with them.
+    pub fn read(path: &Path) -> Result<Self> {
+        let file: FitFile = read_ron(path)?;
+        let begin = Named::read(path, &file.config, file.resolution)?;
+        let explorer = file.explorer.as_ref().unwrap_or(&file.config);
+        let explorer = Named::read(path, explorer, file.resolution)?;
+        if begin.config.robot != explorer.config.robot {
+            return Err(about(path)(Fault::OtherRobot {
+                explorer: explorer.file,
+                config: begin.file,
+            }));
+        }
+        Axis::check(&file.axes).map_err(about(path))?;
+        for axis in &file.axes {
+            axis.place(&begin.config.model).map_err(about(path))?;
+        }
+        if file.training.is_empty() {
+            return Err(about(path)(Fault::NoTraining));
+        }
+        in_range(path, "starts", file.starts, 1000)?;
+        in_range(path, "evaluations", file.evaluations, 1_000_000)?;
+        let plan = Self { file, path: path.to_owned(), begin, explorer };
+        for source in plan.file.training.iter().chain(&plan.file.held_out) {
+            plan.check(source)?;
+        }
+        Ok(plan)
+    }
+
+    /// The examples of some sources, made side by side.
+    ///
+    /// # Errors
+    /// If one cannot be made.
+    pub fn examples(&self, sources: &[Source], watch: &dyn Watch) -> Result<Vec<Example>> {
+        let example = |source: &Source| {
+            watch.begin(&format!("reading {}", source.file().display()));
+            match source {
+                Source::Simulated(source) => {
+                    source.example(&self.path, &self.explorer, &mut || watch.flow())
+                }
+                Source::Recorded(source) => source.example(&self.path, &self.begin.config),
+            }
+        };
+        sources.par_iter().map(example).collect()
+    }
+
+    /// Fits the model to examples: as many local searches as the file says.
+    ///
+    /// # Errors
+    /// If the fit cannot begin.
+    pub fn search(&self, training: &[Example], watch: &dyn Watch) -> Result<Fitted> {
+        let file = &self.file;
+        let settings = FitSettings {
+            weighting: file.weighting,
+            axes: file.axes.clone(),
+            starts: file.starts,
+            search: SearchSettings { evaluations: file.evaluations, ..SearchSettings::default() },
+        };
+        let mut random = stream(file.seed, "fit", 0);
+        let (mut count, mut best) = (0, f64::NEG_INFINITY);
+        let report = |evaluation: &covmap_fit::Evaluation| {
+            count += 1;
+            best = evaluation.log_likelihood.unwrap_or(best).max(best);
+            watch.tell(&format_args!(
+                "search {} of {} · {count} evaluations · log-likelihood {best:.4} nats a cell",
+                evaluation.start + 1,
+                file.starts
+            ));
+            watch.flow()
+        };
+        let model = &self.begin.config.model;
+        Ok(fit(training, model, &settings, || uniform(&mut random), report)?)
+    }
+
+    /// Finds what is wrong with a source before any work is done.
+    fn check(&self, source: &Source) -> Result<()> {
+        match source {
+            Source::Simulated(source) => source.task(&self.path, &self.explorer).map(|_| ()),
+            Source::Recorded(source) => source.check(&self.path),
+        }
+    }
+}
+
+/// Checks that a number lies in `1..=high`.
+fn in_range(path: &Path, field: &'static str, value: usize, high: usize) -> Result<()> {
+    if (1..=high).contains(&value) {
+        return Ok(());
+    }
+    Err(about(path)(Fault::Range { field, value, low: 1, high }))
+}
+
+impl Source {
+    /// The file that it is made from.
+    pub fn file(&self) -> &Path {
+        match self {
+            Self::Simulated(source) => &source.scenario,
+            Self::Recorded(source) => &source.log,
+        }
+    }
+}
+
+impl Simulated {
+    /// The world and the experiment in it.
+    fn task(&self, path: &Path, explorer: &Named) -> Result<(World, Experiment)> {
+        let Named { config, file: name } = explorer;
+        in_range(path, "scans", self.scans.unwrap_or(1), MOST_SCANS)?;
+        let world = self.world(path, config.sonar.surface)?;
+        let file = beside(path, &self.scenario);
+        let mut config = config.clone();
+        config.planner.strategy = self.strategy;
+        config.resolution = self.resolution.unwrap_or(config.resolution);
+        let limits = Limits { max_scans: self.scans, ..Limits::default() };
+        let mission = files::mission((&world, &file), (&config, name.as_path()), None, limits)?;
+        Ok((world, Experiment { mission, sonar: config.sonar, seed: self.seed }))
+    }
+
+    /// The world; what no file says about surfaces is `surface`.
+    fn world(&self, path: &Path, surface: Surface) -> Result<World> {
+        let moves = [self.turn, self.shift.0, self.shift.1];
+        if !moves.iter().all(|v| v.is_finite()) || self.shift.0 < 0.0 || self.shift.1 < 0.0 {
+            let must = "finite, the shift not negative";
+            return Err(about(path)(Fault::Number { field: "turn and shift", must }));
+        }
+        let file = beside(path, &self.scenario);
+        if !file.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("ron")) {
+            if moves.iter().any(|v| v.abs() > 0.0) {
+                return Err(about(&file)(Fault::MapMoved));
+            }
+            return files::world(&file, self.surface.unwrap_or(surface));
+        }
+        let scenario = files::scenario(&file)?;
+        let world = files::moved(&scenario, self.turn, self.shift, (&file, surface))?;
+        let Some(surface) = self.surface else { return Ok(world) };
+        let placed = files::placed(&scenario, self.turn, self.shift);
+        World::from_scenario(&placed.with_surface(surface), surface).map_err(about(&file))
+    }
+
+    /// Lets the robot explore, and takes what it measured with the truth.
+    fn example(
+        &self,
+        path: &Path,
+        explorer: &Named,
+        watch: &mut dyn FnMut() -> ControlFlow<()>,
+    ) -> Result<Example> {
+        let (world, experiment) = self.task(path, explorer)?;
+        let mission = &experiment.mission;
+        let run = experiment.explore(&world, &mut |_, view| match view.scans {
+            MOST_SCANS.. => ControlFlow::Break(()),
+            _ => watch(),
+        })?;
+        let truth = Truth::new(&world, mission);
+        let measured = truth.measured_cells(&run.map);
+        let coverage = |cell| truth.coverage.get(cell).copied().unwrap_or(1.0);
+        Ok(Example {
+            name: self.name(&world, mission),
+            ring: ring(mission)?,
+            scans: run.scans,
+            body: BodyRecord { radius: mission.config.robot.radius, events: run.body },
+            grid: mission.grid,
+            truth: measured.into_iter().map(|cell| (cell, coverage(cell))).collect(),
+        })
+    }
+
+    fn name(&self, world: &World, mission: &Mission) -> String {
+        let surface = match self.surface {
+            None => "",
+            Some(Surface::Rough) => ", rough",
+            Some(Surface::Smooth) => ", smooth",
+        };
+        let resolution = mission.config.resolution;
+        let Self { strategy, seed, .. } = self;
+        format!("{}{surface}, {strategy}, r = {resolution} m, seed {seed}", world.name())
+    }
+}
+
+fn ring(mission: &Mission) -> Result<SonarRing> {
+    Ok(SonarRing::from_specification(&mission.config.robot.ring)?)
+}

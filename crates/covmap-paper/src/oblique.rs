@@ -1,0 +1,106 @@
+//! Occupancy and coverage on the cells of oblique walls (claim 21).
+
+use crate::error::Result;
+use crate::runs::Units;
+use covmap::{Class, CoverageMap};
+use covmap_lab::{Config, SimulatedRobot};
+use covmap_model::{OccupancyGrid, OccupancyParameters, integrate};
+use covmap_sonar::Scan;
+use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
+use nalgebra::{Isometry2, Point2};
+use rayon::prelude::*;
+
+/// A wall is turned by each of these [°].
+const TURNS: [f64; 6] = [7.0, 12.0, 17.0, 23.0, 29.0, 38.0];
+/// The robot drives past it at this distance \[m\], and measures so often …
+const AWAY: [f64; 2] = [0.8, 1.2];
+const SCANS: usize = 40;
+/// … over this length \[m\].
+const LENGTH: f64 = 2.0;
+/// From this distance \[m\] on cells are not looked at.
+const RANGE: f64 = 2.0;
+
+/// Each unit is a (distance, seed) with mean occupancy, error of the occupancy, and error of the
+/// expected coverage over the partly covered cells in sight; a group is what was measured of one
+/// wall.
+#[derive(Debug, Clone)]
+pub struct Oblique(pub(crate) Units);
+
+impl Oblique {
+    /// The value of the occupancy, by its place.
+    pub const OCCUPANCY: usize = 0;
+    /// Its error.
+    pub const OCCUPANCY_ERROR: usize = 1;
+    /// The error of the coverage.
+    pub const COVERAGE_ERROR: usize = 2;
+
+    /// Drives past each wall at two distances, with the seeds 1, 2, … `seeds`.
+    pub fn measure(config: &Config, seeds: u64) -> Result<Self> {
+        let group = |turn: f64| -> Result<Vec<Vec<f64>>> {
+            let units = AWAY.into_iter().flat_map(|away| (1..=seeds).map(move |s| (away, s)));
+            units.map(|(away, seed)| unit(config, turn.to_radians(), away, seed)).collect()
+        };
+        Ok(Self(Units(TURNS.into_par_iter().map(group).collect::<Result<_>>()?)))
+    }
+}
+
+/// A thick wall through the middle of a hall, turned.
+fn wall(turn: f64) -> Scenario {
+    let rectangle = Shape::Rectangle { center: (4.0, 4.0), size: (6.0, 0.4), angle: turn };
+    Scenario {
+        name: "oblique".into(),
+        extent: Extent { width: 8.0, height: 8.0 },
+        start: None,
+        obstacles: vec![Obstacle { shape: rectangle, surface: Surface::Rough }],
+    }
+}
+
+fn unit(config: &Config, turn: f64, away: f64, seed: u64) -> Result<Vec<f64>> {
+    let world = World::from_scenario(&wall(turn), config.sonar.surface)?;
+    let (_, model) = config.build()?;
+    let grid = world.grid(config.resolution)?;
+    let mut map = CoverageMap::new(grid, config.model.bins)?;
+    let mut occupancy = OccupancyGrid::new(grid, OccupancyParameters::default());
+    let mut robot = SimulatedRobot::new(&world, config, seed)?;
+    let mut places = Vec::new();
+    for index in 0..SCANS {
+        let along = LENGTH * (index as f64 / (SCANS - 1) as f64 - 0.5);
+        // Below the wall, in its own frame.
+        let turned = Isometry2::new(nalgebra::Vector2::new(4.0, 4.0), turn);
+        let at = turned * Point2::new(along, -0.2 - away);
+        let pose = Isometry2::new(at.coords, 0.0);
+        let scan = Scan { pose, time: 0.0, ranges: robot.fire(&pose) };
+        integrate(&model, &mut map, &scan);
+        occupancy.integrate(&model, &scan);
+        places.push(at);
+    }
+    let truth = world.coverage(&grid);
+    let seen = world.cells_seen_from(&grid, &truth, places.into_iter(), RANGE);
+    let occupied = occupancy.probabilities();
+    let (mut sums, mut count) = (vec![0.0; 3], 0.0);
+    for (cell, coverage) in truth.iter() {
+        let is = |raster: &covmap::Raster<bool>| raster.get(cell).copied().unwrap_or(false);
+        let in_sight = is(&seen.in_sight) || is(&seen.first_solid);
+        let Some(p) = occupied.get(cell).copied().flatten() else { continue };
+        if in_sight && Class::of(*coverage) == Class::Partial {
+            sums[Oblique::OCCUPANCY] += p;
+            sums[Oblique::OCCUPANCY_ERROR] += (p - coverage).abs();
+            sums[Oblique::COVERAGE_ERROR] += (map.mean(cell) - coverage).abs();
+            count += 1.0;
+        }
+    }
+    Ok(sums.into_iter().map(|sum| sum / f64::max(count, 1.0)).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_measured_of_one_wall_is_one_group() {
+        let config = Config { resolution: 0.2, ..Config::b21r() };
+        let Oblique(Units(groups)) = Oblique::measure(&config, 1).unwrap();
+        assert_eq!(groups.len(), TURNS.len());
+        assert!(groups.iter().all(|group| group.len() == AWAY.len()));
+    }
+}
