@@ -88,7 +88,7 @@ const ARROWS: [(&str, &[&str]); 17] = [
 ];
 
 /// A source file without the modules of its tests, which rustfmt closes with a brace of its own line.
-fn without_tests(text: &str) -> String {
+pub(crate) fn without_tests(text: &str) -> String {
     let (mut code, mut in_tests) = (String::new(), false);
     for line in text.lines() {
         in_tests |= line.starts_with("#[cfg(test)]");

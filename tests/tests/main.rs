@@ -6,6 +6,7 @@ mod decisions;
 mod docs;
 mod fitting;
 mod golden;
+mod rooms;
 mod shipped_files;
 mod standing_still;
 mod turned_buildings;

@@ -105,59 +105,10 @@ fn measure(
     Ok(Some((all, times, paths)))
 }
 
-/// The names of all numbers that are measured of a run, in the order of the columns of `runs.csv`.
-pub const NUMBERS: [&str; 46] = [
-    "resolution",
-    "scans",
-    "decisions",
-    "bumps",
-    "path_length_m",
-    "turns_rad",
-    "cells.exhausted",
-    "cells.not_seen",
-    "cells.open",
-    "cells.outside",
-    "cells.resolved",
-    "cells.unreachable",
-    "completeness",
-    "wall_recall",
-    "phantom",
-    "mae_mode",
-    "mae_mean",
-    "mean_log_likelihood",
-    "share_entropy_above_0_65",
-    "cut_off.bumps",
-    "cut_off.cells",
-    "cut_off.passages",
-    "cut_off.phantoms",
-    "cut_off.unknown",
-    "negative_gains",
-    "capped_cells",
-    "crps",
-    "mae_free",
-    "mae_partial",
-    "mae_solid",
-    "mae_observable",
-    "log_likelihood_observable",
-    "crps_observable",
-    "mae_free_observable",
-    "mae_partial_observable",
-    "mae_solid_observable",
-    "share_explored",
-    "share_uncertain",
-    "observable_cells",
-    "compared_cells",
-    "measurements.until_explored",
-    "measurements.until_explored_discounted",
-    "measurements.mean",
-    "measurements.sd",
-    "measurements.min",
-    "measurements.max",
-];
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::NUMBERS;
     use covmap_explore::Limits;
     use covmap_lab::Config;
     use covmap_world::{Extent, Scenario, Surface};

@@ -28,6 +28,7 @@ mod error;
 mod execute;
 mod file;
 mod folder;
+mod numbers;
 mod parameters;
 mod paths;
 mod plan;
@@ -39,9 +40,9 @@ mod version;
 
 pub use collect::{Collected, collect};
 pub use error::{CampaignError, FolderFault, Result, StartsFault};
-pub use execute::NUMBERS;
 pub use file::{Campaign, NamedWorld, Seeds, Setting, Starts};
 pub use folder::{Manifest, Planned, load_paths};
+pub use numbers::NUMBERS;
 pub use parameters::{PARAMETERS, parameters};
 pub use paths::{Paths, driven};
 pub use plan::{Case, Job, Plan, Shard};

@@ -1,9 +1,9 @@
 //! All runs of a campaign, checked before any of them starts.
 
 use crate::error::{CampaignError, Result};
-use crate::execute::NUMBERS;
 use crate::file::{Campaign, NamedWorld, Setting};
 use crate::folder::{Manifest, Planned};
+use crate::numbers::NUMBERS;
 use crate::record::RunKey;
 use crate::version::VERSION;
 use covmap_explore::{Limits, Mission};

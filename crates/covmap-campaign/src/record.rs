@@ -1,6 +1,5 @@
 //! What is recorded of a run.
 
-use crate::error::Result;
 use covmap_lab::Summary;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
@@ -74,7 +73,7 @@ const NOT_VALUES: [&str; 6] =
     ["world", "strategy", "seed", "seconds", "wall_recall_rough", "wall_recall_smooth"];
 
 /// All numbers of a summary by their names; those of a group as `group.name`.
-pub(crate) fn values(summary: &Summary) -> Result<IndexMap<String, Value>> {
+pub(crate) fn values(summary: &Summary) -> serde_json::Result<IndexMap<String, Value>> {
     let text = serde_json::to_string(summary)?;
     let fields: IndexMap<String, serde_json::Value> = serde_json::from_str(&text)?;
     let mut values = IndexMap::new();

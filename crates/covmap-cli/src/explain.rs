@@ -23,15 +23,16 @@ pub(crate) fn run(arguments: &Explain) -> Result<ExitCode> {
     }
     let trace = Trace::read(&path, *step)?;
     let moment = replay(&trace, &path)?;
+    let reason = reason(&moment);
     let picture = dir.join(format!("explain-{step}.png"));
-    let png = explain_picture::draw(&moment, &trace.header.world, *step).to_png();
+    let png = explain_picture::draw(&moment, (&trace.header.world, *step), &reason).to_png();
     write_file(&picture, &png.map_err(about(&picture))?, force.replace())?;
     let config = &moment.mission.config;
     let (strategy, update) = (&config.planner.strategy, config.model.update.name());
     say::line(format!("{}, {strategy}, update {update}: decision {step}", trace.header.world));
     facts(&moment).iter().for_each(|fact| say::line(format!("  {fact}")));
     table(&moment).iter().for_each(say::line);
-    say::line(reason(&moment));
+    say::line(&reason);
     say::line(picture.display());
     Ok(ExitCode::SUCCESS)
 }
@@ -104,7 +105,7 @@ fn table(moment: &Moment) -> Vec<String> {
 }
 
 /// What made the first the best.
-pub(crate) fn reason(moment: &Moment) -> String {
+fn reason(moment: &Moment) -> String {
     let Some(best) = moment.decision.best.first() else { return "nothing to choose".into() };
     let CandidateRecord { gain, cost, gain_term, cost_term, score, .. } = best;
     match moment.mission.config.planner.strategy {

@@ -1,6 +1,5 @@
 //! The picture of a decision.
 
-use crate::explain::reason;
 use covmap::{Cell, CoverageMap, Grid, Raster};
 use covmap_draw::{ColorMap, Key, Marker, Picture, Rgb};
 use covmap_lab::Moment;
@@ -16,7 +15,7 @@ const MARGIN: i32 = 3;
 const BEST: Rgb = Rgb(30, 160, 190);
 
 /// E\[I\] over the candidates, the five best, and the way to the one that was chosen.
-pub(crate) fn draw(moment: &Moment, world: &str, step: usize) -> Picture {
+pub(crate) fn draw(moment: &Moment, (world, step): (&str, usize), reason: &str) -> Picture {
     let Moment { mission, map, trajectory, scans, from, decision, candidates } = moment;
     let grid = mission.grid;
     let mut gains = Raster::filled(grid, None);
@@ -33,7 +32,7 @@ pub(crate) fn draw(moment: &Moment, world: &str, step: usize) -> Picture {
     let strategy = &mission.config.planner.strategy;
     picture
         .title(&format!("{world}, {strategy}: decision {step}, after {scans} scans"))
-        .subtitle(&reason(moment))
+        .subtitle(reason)
         .cells(&certain_coverage(map, mission), |color| *color)
         .overlay(&gains, OPACITY, |gain| gain.map(color))
         .polyline(trajectory, Rgb::BLUE, 1.5);

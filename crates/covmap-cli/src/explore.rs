@@ -3,6 +3,7 @@
 use crate::arguments::Explore;
 use crate::built_in;
 use crate::fit_report;
+use crate::names;
 use crate::output;
 use crate::terminal::interrupt::{self, Interrupt};
 use crate::terminal::progress::Progress;
@@ -94,24 +95,24 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
     let (default, _) = files::config(None, built_in::B21R)?;
     let (named, _) = files::config(config.as_deref(), built_in::B21R)?;
     let other = config.as_deref().filter(|_| named != default);
-    let finer = resolution.and_then(|resolution| output::unlike(resolution, named.resolution));
+    let finer = resolution.and_then(|resolution| names::unlike(resolution, named.resolution));
     let start = start.map(|start| {
         let (place, heading) = (start.translation.vector, start.rotation.angle().to_degrees());
-        let [x, y, degrees] = [place.x, place.y, heading].map(output::typed);
+        let [x, y, degrees] = [place.x, place.y, heading].map(names::typed);
         format!("at{x}_{y}_{degrees}")
     });
-    Ok(output::named([
+    Ok(names::named([
         Some(task.world.name().to_owned()),
         Some(task.experiment.mission.config.planner.strategy.file_name()),
         Some(task.experiment.seed.to_string()),
-        other.map(output::stem),
+        other.map(names::stem),
         arguments.settings.in_name(),
         arguments.effort.map(|effort| format!("{effort:?}").to_lowercase()),
         finer.map(|resolution| format!("r{resolution}")),
         start,
         while_driving.map(|every| format!("every{every}")),
         max_scans.map(|most| format!("max{most}")),
-        arguments.read_out.path().map(output::stem),
+        arguments.read_out.path().map(names::stem),
     ]))
 }
 

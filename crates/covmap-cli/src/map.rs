@@ -5,6 +5,8 @@ use crate::arguments::{Map, SensorName};
 use crate::built_in;
 use crate::map_pictures::MapPictures;
 use crate::map_report;
+use crate::map_summary::{CellCounts, MapSummary};
+use crate::names;
 use crate::output;
 use crate::terminal::Terminal;
 use crate::terminal::interrupt::{self, Interrupt};
@@ -18,12 +20,10 @@ use covmap_lab::memory;
 use covmap_lab::results;
 use covmap_lab::{LabError, Reader};
 use covmap_lab::{Log, LogOverview, Mapper, Stride};
-use covmap_log::{LogOptions, Readings, Sensor, SensorAccount, Skipped};
+use covmap_log::{LogOptions, Sensor, SensorAccount, Skipped};
 use covmap_model::{Footprint, FootprintRule, SensorModel};
 use covmap_plan::BodyEvidence;
 use covmap_sonar::{Beam, SonarRing};
-use serde::Serialize;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -32,46 +32,6 @@ use std::time::Instant;
 /// A sensor's axis may pass the robot's centre at this distance, and sectors from the centre
 /// still describe it \[m\].
 const OFF_CENTRE: f64 = 0.05;
-
-/// What `summary.json` holds: of the keys of an exploration those that apply.
-#[derive(Debug, Serialize)]
-pub(crate) struct MapSummary {
-    /// The log's name.
-    pub(crate) world: String,
-    pub(crate) sensor: &'static str,
-    /// r \[m\].
-    pub(crate) resolution: f64,
-    /// Frames of the log: skipped, standing, or scans of the map.
-    pub(crate) frames: usize,
-    skipped: usize,
-    pub(crate) standing: usize,
-    pub(crate) scans: usize,
-    /// Places where the poses jump, so that nobody knows the way.
-    pub(crate) jumps: usize,
-    pub(crate) path_length_m: f64,
-    pub(crate) cells: CellCounts,
-    /// The share of the known cells that the body did not pin with an entropy above .65.
-    pub(crate) share_entropy_above_0_65: f64,
-    /// The read-out through which that is, if there was one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) read_out: Option<PathBuf>,
-    pub(crate) seconds: f64,
-    /// All readings of the log, by the lines that they stand in.
-    readings: BTreeMap<&'static str, Readings>,
-    /// What the map depends on, and what says so.
-    pub(crate) taken_from: Vec<String>,
-    /// What else there is to know of the log.
-    pub(crate) remarks: Vec<String>,
-    /// What was lost of the log, in words.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) warning: Option<String>,
-}
-
-#[derive(Debug, Serialize)]
-pub(crate) struct CellCounts {
-    pub(crate) known: usize,
-    pub(crate) unknown: usize,
-}
 
 pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     let begun = Instant::now();
@@ -218,17 +178,17 @@ fn folder_name(arguments: &Map) -> Result<PathBuf> {
         return Ok(out.clone());
     }
     let (named, _) = named_config(arguments)?;
-    let finer = resolution.and_then(|resolution| output::unlike(resolution, named.resolution));
-    Ok(output::named([
+    let finer = resolution.and_then(|resolution| names::unlike(resolution, named.resolution));
+    Ok(names::named([
         Some(log_name(&arguments.log)),
         Some(sensor_name(arguments.sensor).to_owned()),
-        config.as_deref().map(output::stem),
-        poses.as_deref().map(output::stem),
+        config.as_deref().map(names::stem),
+        poses.as_deref().map(names::stem),
         finer.map(|resolution| format!("r{resolution}")),
         arguments.settings.in_name(),
-        output::unlike(*every, 0.05).map(|every| format!("every{every}")),
-        output::unlike(*every_degrees, 5.0).map(|degrees| format!("turn{degrees}")),
-        arguments.read_out.path().map(output::stem),
+        names::unlike(*every, 0.05).map(|every| format!("every{every}")),
+        names::unlike(*every_degrees, 5.0).map(|degrees| format!("turn{degrees}")),
+        arguments.read_out.path().map(names::stem),
     ]))
 }
 

@@ -1,6 +1,6 @@
 //! The pictures of the map of a log.
 
-use crate::map::MapSummary;
+use crate::map_summary::MapSummary;
 use covmap::CoverageMap;
 use covmap_draw::Picture;
 use covmap_lab::Mapper;

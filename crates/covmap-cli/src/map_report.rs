@@ -1,7 +1,7 @@
 //! What `map` says of a log and its map.
 
 use crate::arguments::Map;
-use crate::map::MapSummary;
+use crate::map_summary::MapSummary;
 use crate::terminal::say;
 use covmap_io::FileError;
 use covmap_io::csv;

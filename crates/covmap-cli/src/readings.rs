@@ -7,6 +7,7 @@ use crate::about::about;
 use crate::arguments::Readings as Arguments;
 use crate::built_in;
 use crate::fit_report::INTERRUPTED;
+use crate::names;
 use crate::output;
 use crate::terminal::interrupt::{self, Interrupt};
 use crate::terminal::progress::Progress;
@@ -121,7 +122,7 @@ fn run_line(arguments: &Arguments, config: &Config) -> Result<String> {
     if let Some(poses) = poses {
         digest = digest.with_file(poses)?;
     }
-    Ok(output::run_line(&format!("readings {}", output::stem(log)), digest))
+    Ok(output::run_line(&format!("readings {}", names::stem(log)), digest))
 }
 
 fn tell(rows: &[(&str, Table)]) {

@@ -10,6 +10,7 @@
 //! # Units
 //! Metres, radians, nats, seconds.
 
+mod ending;
 mod event;
 mod explorer;
 mod mission;
@@ -17,9 +18,10 @@ mod parameters;
 mod robot;
 mod run;
 
+pub use ending::Ending;
 pub use event::{Event, TraceHasher};
 pub use explorer::{Explorer, ScanError};
 pub use mission::{Limits, Mission, MissionError, standing_place};
 pub use parameters::{ParameterError, Parameters, RobotParameters};
 pub use robot::{RecordedRobot, Robot, Sensed};
-pub use run::{Ending, Run, View, explore, explore_by};
+pub use run::{Run, View, explore, explore_by};

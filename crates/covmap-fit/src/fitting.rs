@@ -2,22 +2,11 @@
 
 use crate::search::{SearchSettings, higher, maximise, random_start};
 use crate::{
-    Axis, AxisError, ByClass, Class, Example, ExampleScore, Method, Parameter, Update, score_method,
+    Axis, AxisError, Example, ExampleScore, Method, Parameter, Update, Weighting, score_method,
 };
 use covmap_model::{ModelError, ModelParameters};
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::ops::ControlFlow;
-
-/// What the objective is the mean of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Weighting {
-    /// All cells alike.
-    Cells,
-    /// The classes alike: cells that are free, partly covered, and solid, as far as there are
-    /// any. Indoors most cells are free, and few are solid and in sight: alike, cells let a fit
-    /// buy a better likelihood of the others with walls that are not there.
-    Classes,
-}
 
 /// How the parameters are sought.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,50 +68,6 @@ pub enum FitError {
     /// The given parameters, moved into the bounds, make no model.
     #[error("the parameters to begin with, moved into the bounds of the axes, make no model: {0}")]
     Begin(ModelError),
-}
-
-impl Weighting {
-    /// The mean log-likelihood \[nats\].
-    pub fn objective(self, score: &ExampleScore) -> f64 {
-        let is_there = |class| score.get(Some(class)).cells > 0;
-        let mean = self.mean(is_there, |class| Some(score.get(class).log_likelihood));
-        mean.unwrap_or(0.0)
-    }
-
-    /// What each cell weighs, by its class; all of them together 1.
-    pub(crate) fn weights(
-        self,
-        cells: impl ExactSizeIterator<Item = Class> + Clone,
-    ) -> impl Iterator<Item = f64> {
-        let share = |count: usize| 1.0 / count.max(1) as f64;
-        let of_class = ByClass::from_fn(|class| match (self, class) {
-            (_, None) => 0.0,
-            (Self::Cells, Some(_)) => share(cells.len()),
-            (Self::Classes, Some(class)) => share(cells.clone().filter(|c| *c == class).count()),
-        });
-        let each = move |class| *of_class.get(Some(class));
-        let total: f64 = cells.clone().map(each).sum();
-        cells.map(move |class| each(class) / total)
-    }
-
-    /// The mean of what `of` says of all cells (`None`) or of the classes that are there;
-    /// `None` if it says nothing of one of them, or there are none.
-    pub(crate) fn mean(
-        self,
-        is_there: impl Fn(Class) -> bool,
-        of: impl Fn(Option<Class>) -> Option<f64>,
-    ) -> Option<f64> {
-        match self {
-            Self::Cells => of(None),
-            Self::Classes => {
-                let classes = [Class::Free, Class::Partial, Class::Solid].into_iter();
-                let there = classes.filter(|class| is_there(*class)).map(Some);
-                let means: Vec<f64> = there.map(of).collect::<Option<_>>()?;
-                let mean = means.iter().sum::<f64>() / means.len() as f64;
-                (!means.is_empty()).then_some(mean)
-            }
-        }
-    }
 }
 
 /// The points of a profile.

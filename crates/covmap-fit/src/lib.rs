@@ -29,6 +29,7 @@ mod read_out;
 mod reliability;
 mod search;
 mod tuning;
+mod weighting;
 
 pub use axis::{Axis, AxisError, Parameter};
 pub use class::ByClass;
@@ -37,9 +38,10 @@ pub use compare::{CALIBRATION_LEVELS, CalibrationTable, ClassComparison, Compari
 pub use compare::{CellMean, Contender, Difference, Row, compare, table, trajectory_blocks};
 pub use covmap::Class;
 pub use example::{BodyRecord, Example};
-pub use fitting::{Evaluation, FitError, FitSettings, Fitted, Profile, Weighting, fit, score};
+pub use fitting::{Evaluation, FitError, FitSettings, Fitted, Profile, fit, score};
 pub use method::{BetaCounting, Crm, LogOdds, Method, Update};
 pub use read_out::fit_read_out;
 pub use reliability::{EntropyBand, Reliability};
 pub use search::{SearchSettings, Step, maximise};
 pub use tuning::{MethodParameter, TuneError, TuneSettings, Tuned, score_method, tune};
+pub use weighting::Weighting;

@@ -7,7 +7,7 @@
 //! histograms bin by bin, so that a bin of all cells of a block is one vector.
 
 use crate::memory::Size;
-use crate::numbers::to_f32;
+use crate::numbers::{PAD, to_f32};
 use crate::view_points::{group_and_lane, groups_per_row};
 use crate::{InformationGain, RangePrediction, Stencil};
 use covmap::lanes::{LANES, Lanes};
@@ -46,9 +46,6 @@ pub(crate) struct Belief {
     changed: Vec<usize>,
     is_changed: Vec<bool>,
 }
-
-/// The number of columns on either side of a row that can be read, past its cells, as if they were cells.
-pub(crate) const PAD: usize = LANES;
 
 /// In place of an expected coverage: no reading has touched the cell.
 pub(crate) const NOT_KNOWN: f32 = -1.0;

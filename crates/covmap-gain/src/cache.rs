@@ -12,7 +12,7 @@ use crate::outcomes::{AskedRow, BeamAnswer, RowGains};
 use crate::sight::{GroupLikelihood, RasterBeam};
 use crate::stencil::FARTHEST;
 use crate::view_points::{group_and_lane, groups_per_row};
-use crate::{BeamError, InformationGain, RangePrediction, Stencil, ViewPoints};
+use crate::{BeamError, InformationGain, RangePrediction, Stencil, Upkeep, ViewPoints};
 use covmap::lanes::LANES;
 use covmap::{Cell, CoverageMap, Grid};
 use covmap_model::{ModelParameters, Registers, SensorModel};
@@ -36,16 +36,6 @@ const GROUPS_PER_THREAD: usize = 4096;
 
 /// A gain may be above its bound by so much, by rounding.
 const ROUNDING: f32 = 1e-5;
-
-/// Whether E\[I\] is kept up to date.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Upkeep {
-    /// Gains and their bounds are kept until a change makes them stale.
-    Kept,
-    /// Gains are evaluated anew whenever they are asked for, and have no bounds. This takes less
-    /// memory, and less time if few are asked for.
-    OnDemand,
-}
 
 /// What every view-point sees, V(l), and is expected to gain, E\[I(l)\].
 ///

@@ -53,8 +53,9 @@ mod evidence;
 mod largest;
 mod layout;
 mod memory;
+mod upkeep;
 
-pub use cache::{GAIN_TOLERANCE, GainCache, Upkeep};
+pub use cache::{GAIN_TOLERANCE, GainCache};
 pub use layout::{MemoryLayout, PlaneLayout};
 pub use literal::{expected_changes, expected_information_gain, imagined_causes};
 pub use product::{RangeInterpolation, TableErrors};
@@ -63,4 +64,5 @@ pub use range_likelihood::{
 };
 pub use sight::NEGLIGIBLE;
 pub use stencil::{BeamError, BeamStencil, Stencil, StencilCell};
+pub use upkeep::Upkeep;
 pub use view_points::ViewPoints;

@@ -1,7 +1,7 @@
 //! How much memory a cache will take, before it takes any.
 
 use crate::Upkeep;
-use crate::belief::PAD;
+use crate::numbers::PAD;
 use crate::numbers::as_f64;
 use covmap::Grid;
 use covmap::lanes::LANES;

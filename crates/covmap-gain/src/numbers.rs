@@ -1,5 +1,10 @@
 //! Conversions of numbers that lose nothing that matters.
 
+use covmap::lanes::LANES;
+
+/// The number of columns on either side of a row that can be read, past its cells, as if they were cells.
+pub(crate) const PAD: usize = LANES;
+
 /// A count. Exact below 2⁵³.
 pub(crate) fn as_f64(count: usize) -> f64 {
     count as f64

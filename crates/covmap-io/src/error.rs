@@ -1,7 +1,7 @@
 //! What can be wrong with a file.
 
 use crate::escaped::{escaped, shown};
-use crate::map_server::{ImageError, MapServerError};
+use crate::map_error::{ImageError, MapServerError};
 use std::io;
 use std::path::{Path, PathBuf};
 

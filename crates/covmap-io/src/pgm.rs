@@ -1,6 +1,6 @@
 //! Portable grey maps: the images of map_server.
 
-use crate::map_server::ImageError;
+use crate::map_error::ImageError;
 
 /// A grey image of the kind P5 (binary) or P2 (text), whose rows are read from the **top** on.
 #[derive(Debug)]

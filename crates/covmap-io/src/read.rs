@@ -49,28 +49,6 @@ fn check(kind: FileType) -> io::Result<()> {
     Err(io::Error::other(format!("it is {}, not a file", kind_of(kind))))
 }
 
-/// What something is that is no file.
-pub(crate) fn kind_of(kind: FileType) -> &'static str {
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::FileTypeExt;
-        if kind.is_fifo() {
-            return "a pipe";
-        } else if kind.is_socket() {
-            return "a socket";
-        } else if kind.is_char_device() || kind.is_block_device() {
-            return "a device";
-        }
-    }
-    if kind.is_dir() {
-        "a folder"
-    } else if kind.is_symlink() {
-        "a symbolic link"
-    } else {
-        "something else"
-    }
-}
-
 /// Options that open, and read, without waiting for anybody.
 fn at_once() -> OpenOptions {
     #[allow(unused_mut, reason = "changed where the flag is known")]
@@ -134,6 +112,28 @@ pub fn read_text(path: impl AsRef<Path>, limit: u64) -> Result<String, FileError
         path: path.to_path_buf(),
         at: error.utf8_error().valid_up_to(),
     })
+}
+
+/// What something is that is no file.
+pub(crate) fn kind_of(kind: FileType) -> &'static str {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        if kind.is_fifo() {
+            return "a pipe";
+        } else if kind.is_socket() {
+            return "a socket";
+        } else if kind.is_char_device() || kind.is_block_device() {
+            return "a device";
+        }
+    }
+    if kind.is_dir() {
+        "a folder"
+    } else if kind.is_symlink() {
+        "a symbolic link"
+    } else {
+        "something else"
+    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,5 @@
 //! Why work with files of the laboratory fails.
 
-use crate::memory::MemoryError;
 use crate::{ConfigError, SetupError};
 use covmap::{GridError, MapError, ReadOutError};
 use covmap_explore::{MissionError, ParameterError};
@@ -246,6 +245,28 @@ pub enum Fault {
     /// A file was written by another version.
     #[error("another version wrote it")]
     OtherVersion,
+}
+
+/// Something takes more memory than is allowed.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{what} would take about {} of memory, more than {}; use a coarser resolution, or allow more with --memory",
+    amount(*bytes),
+    amount(*limit)
+)]
+pub struct MemoryError {
+    /// What takes it, in words.
+    pub what: String,
+    /// How much it takes \[bytes\].
+    pub bytes: u64,
+    /// How much is allowed \[bytes\].
+    pub limit: u64,
+}
+
+/// An amount of memory as one would say it.
+fn amount(bytes: u64) -> String {
+    let gib = bytes as f64 / f64::from(1 << 30);
+    if gib < 1.0 { format!("{:.0} MiB", 1024.0 * gib) } else { format!("{gib:.1} GiB") }
 }
 
 fn decisions_in_words(decisions: usize) -> String {

@@ -53,7 +53,7 @@ mod watch;
 pub use config::{Config, ConfigError};
 pub use cut_off::CutOff;
 pub use echo::{echo_distances, echo_table};
-pub use error::{Fault, LabError, Result, about};
+pub use error::{Fault, LabError, MemoryError, Result, about};
 pub use experiment::Experiment;
 pub use fit_file::{FitFile, FitPlan, Named, Simulated, Source};
 pub use log_map::{Log, LogOverview, Mapper, Stride};

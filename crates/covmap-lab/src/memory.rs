@@ -2,7 +2,7 @@
 //!
 //! The limit is the process's, as the memory is.
 
-use crate::error::Result;
+use crate::error::{MemoryError, Result};
 use crate::{Config, ConfigError};
 use covmap::{CoverageMap, Grid};
 use covmap_plan::planner_bytes;
@@ -12,22 +12,6 @@ const GIB: f64 = (1u64 << 30) as f64;
 
 /// How many bytes are allowed: by default as many as `--memory` says in its help.
 static LIMIT: AtomicU64 = AtomicU64::new(4 << 30);
-
-/// Something takes more memory than is allowed.
-#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "{what} would take about {} of memory, more than {}; use a coarser resolution, or allow more with --memory",
-    amount(*bytes),
-    amount(*limit)
-)]
-pub struct MemoryError {
-    /// What takes it, in words.
-    pub what: String,
-    /// How much it takes \[bytes\].
-    pub bytes: u64,
-    /// How much is allowed \[bytes\].
-    pub limit: u64,
-}
 
 /// Allows this many GiB from now on.
 pub fn allow(gib: f64) {
@@ -81,12 +65,6 @@ fn map_of(grid: &Grid, config: &Config) -> String {
 fn check(bytes: u64, what: impl Fn() -> String) -> Result<(), MemoryError> {
     let limit = LIMIT.load(Ordering::Relaxed);
     if bytes <= limit { Ok(()) } else { Err(MemoryError { what: what(), bytes, limit }) }
-}
-
-/// An amount of memory as one would say it.
-fn amount(bytes: u64) -> String {
-    let gib = bytes as f64 / GIB;
-    if gib < 1.0 { format!("{:.0} MiB", 1024.0 * gib) } else { format!("{gib:.1} GiB") }
 }
 
 /// About how many bytes a run with a configuration on a grid takes at most, the truth and the

@@ -1,7 +1,7 @@
 //! CARMEN's text logs.
 
 use super::carmen_line::{Described, LaserLine, SonarLine};
-use super::device::{Device, Measured, laser_beams};
+use super::device::{Device, Measured, laser_beams, short};
 use super::fields::Fields;
 use super::lines::Lines;
 use super::parameters::{Laser, Parameters, Stated};
@@ -333,9 +333,4 @@ fn tell_laser(
         format!("mounted at ({}, {}) m, {}°", short(place.x), short(place.y), short(angle)),
         mounting,
     );
-}
-
-/// A number with as many digits as are read, and no −0.
-pub(super) fn short(value: f64) -> f64 {
-    (value * 1e4).round() / 1e4 + 0.0
 }

@@ -153,6 +153,11 @@ fn is_longest(range: &Written, max_range: f64) -> bool {
     range.value >= max_range || range.value - max_range + place > 1e-9
 }
 
+/// A number with as many digits as are read, and no −0.
+pub(super) fn short(value: f64) -> f64 {
+    (value * 1e4).round() / 1e4 + 0.0
+}
+
 #[cfg(test)]
 mod tests {
     use super::super::fields::Fields;

@@ -1,7 +1,6 @@
 //! What can be wrong with a log as a whole.
 
-use super::lines::{LONGEST_LINE, MOST_RATIO};
-use super::poses::MOST_POSES;
+use super::limits::{LONGEST_LINE, MOST_POSES, MOST_RATIO};
 use super::{Sensor, Skipped};
 use std::io;
 use std::path::PathBuf;

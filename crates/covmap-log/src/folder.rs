@@ -1,7 +1,6 @@
 //! A folder of three files, in which line i of each is the same frame.
 
-use super::carmen::short;
-use super::device::{Device, Measured, laser_beams};
+use super::device::{Device, Measured, laser_beams, short};
 use super::fields::Fields;
 use super::lines::Lines;
 use super::poses::{PoseFile, Units};

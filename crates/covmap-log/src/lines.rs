@@ -1,5 +1,6 @@
 //! The lines of a text file, plain or packed, and never too much of them.
 
+use super::limits::{LONGEST_LINE, MOST_RATIO};
 use super::{LogError, foreign};
 use covmap_io::open_file;
 use flate2::read::MultiGzDecoder;
@@ -7,11 +8,6 @@ use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The longest line that is read \[bytes\]: 4096 sonars with their places take half of it.
-pub(super) const LONGEST_LINE: usize = 1 << 20;
-/// A packed file may unpack to this many times its size, and always to [`ALWAYS_UNPACKED`].
-/// Logs of a robot that stands still come to about 100; what is made to fill a disk, to 1000.
-pub(super) const MOST_RATIO: u64 = 300;
 /// So much may always be unpacked \[bytes\].
 const ALWAYS_UNPACKED: u64 = 16 << 20;
 /// So much of the beginning can be looked at before the first line is read \[bytes\].

@@ -1,15 +1,14 @@
 //! Files of poses.
 
 use super::fields::Fields;
+use super::limits::MOST_POSES;
 use super::lines::Lines;
-use super::skipped::Damage;
+use super::skipped::{Damage, leapt};
 use super::track::{Fix, Middle, Place, Stamp, Ties, middle, pose_between};
 use super::{LogError, SkipReason, Skipped};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
-/// The most poses that a file may have: they are held at the same time, in some 130 MB.
-pub(super) const MOST_POSES: usize = 2_000_000;
 /// Where a clock started anew, this many runs of time around the last are looked through.
 const RUNS_AROUND: usize = 8;
 
@@ -140,12 +139,6 @@ impl PoseFile {
         let found = self.fixes.binary_search_by_key(&line, |fix| fix.line).ok()?;
         Some((self.fixes[found].pose, found))
     }
-}
-
-/// What is said of a line for which the clock leapt.
-pub(super) fn leapt(time: f64) -> Damage {
-    let fault = format!("time: {time} s is not between those before and after");
-    Damage::new(SkipReason::Clock, fault)
 }
 
 fn parse(lines: &Lines, units: Units) -> Result<Fix, Damage> {

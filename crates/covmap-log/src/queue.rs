@@ -1,8 +1,7 @@
 //! Frames of a CARMEN log, until their poses are known.
 
 use super::device::Measured;
-use super::poses::leapt;
-use super::skipped::Damage;
+use super::skipped::{Damage, leapt};
 use super::track::{Fix, LATEST_LINE, Place, Ties, Track};
 use super::way::Way;
 use super::{Account, Passed, SkipReason};

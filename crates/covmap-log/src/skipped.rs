@@ -136,6 +136,12 @@ impl Damage {
     }
 }
 
+/// What is said of a line for which the clock leapt.
+pub(super) fn leapt(time: f64) -> Damage {
+    let fault = format!("time: {time} s is not between those before and after");
+    Damage::new(SkipReason::Clock, fault)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -31,6 +31,7 @@ mod footprint;
 mod integrate;
 mod looks;
 mod occupancy;
+mod outcome;
 mod parameters;
 mod product;
 mod registers;
@@ -46,8 +47,9 @@ pub use integrate::{
 };
 pub use looks::Looks;
 pub use occupancy::{OccupancyGrid, OccupancyParameters};
+pub use outcome::Outcome;
 pub use parameters::{CauseParameters, FreeSpace, NoEchoShare, Repeats, Update};
 pub use parameters::{Linear, ModelError, ModelParameters, NoEchoParameters, ProductParameters};
 pub use registers::Registers;
 pub use scan_counts::{Counting, ScanCounts};
-pub use sensor_model::{Outcome, SensorModel};
+pub use sensor_model::SensorModel;

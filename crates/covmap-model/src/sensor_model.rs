@@ -3,20 +3,9 @@
 use crate::cause::Clues;
 use crate::parameters::Repeats;
 use crate::product::mu;
-use crate::{Causes, Footprint, Met, ModelError, ModelParameters, Registers, Update};
+use crate::{Causes, Footprint, Met, ModelError, ModelParameters, Outcome, Registers, Update};
 use covmap::{CoverageMap, Histogram};
 use covmap_sonar::{Range, SonarRing};
-
-/// What a reading means to the model.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Outcome {
-    /// An echo from this range \[m\], within the usable range.
-    Echo(f64),
-    /// An echo from this range \[m\], beyond the usable range: free space before it.
-    Beyond(f64),
-    /// No echo: perhaps free space, perhaps a wall that does not answer.
-    NoEcho,
-}
 
 /// The sensor model: for every cell and every reading a distribution over coverages.
 ///

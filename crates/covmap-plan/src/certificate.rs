@@ -1,28 +1,13 @@
 //! What the planner says of the cells: the certificate, what it can reach, and counts for progress.
 
 use crate::exploration::InSight;
-use crate::{CellStatus, Planner, Scope, travel_costs};
+use crate::{CellStatus, Planner, Reach, Scope, travel_costs};
 use covmap::{Cell, CoverageMap, Raster, neighbour};
 use covmap_gain::ViewPoints;
 use serde::{Deserialize, Serialize};
 
 /// A known cell of at least this coverage ends what may still come into sight.
 const OPAQUE: f64 = 0.5;
-
-/// Whether the robot can drive to the centre of a cell, as far as it knows; and if not, why.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Reach {
-    /// It can.
-    Reached,
-    /// It could stand there, but no way is open.
-    CutOff,
-    /// It bumped there.
-    Bumped,
-    /// A known cell under its body would be covered.
-    Covered,
-    /// The cell is unknown.
-    Unknown,
-}
 
 /// What one more scan could change about a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]

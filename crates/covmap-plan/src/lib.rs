@@ -30,7 +30,7 @@ mod outside;
 mod parameters;
 mod passage;
 mod planner;
-mod search;
+mod reach;
 mod strategy;
 mod travel_cost;
 mod traversable;
@@ -38,7 +38,7 @@ mod turning;
 mod window;
 mod windowed;
 
-pub use certificate::{Promise, Reach};
+pub use certificate::Promise;
 pub use decision::{CandidateRecord, Decision};
 pub use exploration::CellStatus;
 pub use memory::planner_bytes;
@@ -46,6 +46,7 @@ pub use parameters::{
     BodyEvidence, Effort, PlannerError, PlannerParameters, Reason, Scope, StallRule,
 };
 pub use planner::Planner;
+pub use reach::Reach;
 pub use strategy::{Strategy, StrategyError};
 pub use travel_cost::{TravelCosts, travel_costs};
 pub use turning::turns;

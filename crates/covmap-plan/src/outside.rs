@@ -2,7 +2,7 @@
 
 use crate::decision::Contest;
 use crate::planner::Candidates;
-use crate::search::Search;
+use crate::planner::search::Search;
 use crate::{CandidateRecord, Decision, Planner};
 use covmap::{Cell, CoverageMap};
 

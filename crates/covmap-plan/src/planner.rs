@@ -1,10 +1,12 @@
 //! The planner: one owner of what is explored, what stalls, and what was computed before.
 
+mod cost;
+pub(crate) mod search;
+
 use crate::decision::{Contest, REPORTED, Score};
 use crate::exploration::{CountedScan, Exploration};
 use crate::measured::Measured;
 use crate::parameters::LeastChange;
-use crate::search::Search;
 use crate::traversable::Traversable;
 use crate::turning::straight;
 use crate::window::Window;
@@ -20,6 +22,7 @@ use covmap_model::{SensorModel, cells_under_body, intercepted};
 use covmap_sonar::Scan;
 use nalgebra::{Point2, Vector2};
 use rayon::prelude::*;
+use search::Search;
 
 /// Chooses view-points by the strategies of section 4, and knows when all is explored.
 ///

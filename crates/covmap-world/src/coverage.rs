@@ -4,7 +4,7 @@
 //! is full or a single cell. What is left of the outlines inside a cell is scaled to the
 //! unit square, where the area of the union is computed.
 
-use crate::geometry::Bounds;
+use crate::faces::Bounds;
 use crate::outline::{Outline, twice_area};
 use crate::world::World;
 use covmap::{Cell, Grid, Raster};

@@ -1,6 +1,6 @@
 //! Driving: a disc that sweeps a straight segment.
 
-use crate::geometry::Face;
+use crate::faces::Face;
 use crate::world::World;
 use covmap_sonar::Drive;
 use nalgebra::{Point2, Vector2};

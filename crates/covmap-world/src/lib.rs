@@ -23,6 +23,9 @@
 mod coverage;
 mod drive;
 mod error;
+mod exposed;
+mod faces;
+mod feature;
 pub mod geometry;
 mod moved;
 mod outline;

@@ -3,7 +3,7 @@
 use crate::error::{
     MAX_EXTENT, MAX_OBSTACLES, MAX_POINTS, MAX_POLYGON_POINTS, MIN_LENGTH, WorldError,
 };
-use crate::geometry::{Bounds, Index};
+use crate::faces::{Bounds, Index};
 use crate::scenario::{Obstacle, Shape, Surface};
 use nalgebra::{Point2, Vector2};
 use std::collections::BTreeSet;

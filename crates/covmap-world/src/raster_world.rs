@@ -1,6 +1,7 @@
 //! The solids and the boundary of a world that is made from a raster.
 
-use crate::geometry::{Face, Feature, Kind};
+use crate::faces::Face;
+use crate::feature::{Feature, Kind};
 use crate::outline::Outline;
 use crate::scenario::Surface;
 use covmap::{Cell, Grid, Raster};

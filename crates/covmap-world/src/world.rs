@@ -1,7 +1,9 @@
 //! The world itself: faces, solids and what they enclose.
 
 use crate::error::{MAX_BURIALS, MAX_EXTENT, MAX_HEADING, MIN_LENGTH, WorldError};
-use crate::geometry::{Bounds, Exposed, Face, Feature, Index, between, of_joint};
+use crate::exposed::Exposed;
+use crate::faces::{Bounds, Face, Index};
+use crate::feature::{Feature, between, of_joint};
 use crate::moved::beyond_sides;
 use crate::outline::{Outline, distinct, outlines};
 use crate::raster_world;

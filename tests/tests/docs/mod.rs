@@ -1,6 +1,6 @@
 //! What the docs name is there: items, files, anchors, and every shipped file in the guide.
 
-mod source;
+pub(crate) mod source;
 
 use crate::{files, root};
 use source::{Found, crates, find, paths_of_tree};

@@ -210,7 +210,7 @@ fn implemented(header: &str) -> (String, bool) {
 }
 
 /// All paths of `a::{b, c::{d, e}}`. What is renamed is not followed.
-pub(super) fn paths_of_tree(tree: &str) -> Vec<Vec<String>> {
+pub(crate) fn paths_of_tree(tree: &str) -> Vec<Vec<String>> {
     let Some(at) = tree.find('{') else {
         let path = parts(tree);
         return if path.is_empty() { Vec::new() } else { vec![path] };

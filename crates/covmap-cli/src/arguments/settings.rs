@@ -1,6 +1,6 @@
 //! Parameters that are set one by one.
 
-use crate::output;
+use crate::names;
 use anyhow::{Result, anyhow};
 use clap::Args;
 use covmap_lab::Config;
@@ -43,7 +43,7 @@ impl Settings {
     pub(crate) fn in_name(&self) -> Option<String> {
         let last = |setting: &Setting| {
             let from = setting.path.rfind('.').map_or(0, |dot| dot + 1);
-            output::plain(&setting.typed[from..])
+            names::plain(&setting.typed[from..])
         };
         let names: Vec<String> = self.set.iter().map(last).collect();
         (!names.is_empty()).then(|| names.join("-"))

@@ -1,7 +1,8 @@
 //! What a cache answers, once it was refreshed.
 
 use super::GainCache;
-use crate::belief::{PAD, padded};
+use crate::belief::padded;
+use crate::numbers::PAD;
 use crate::view_points::group_and_lane;
 use crate::{MemoryLayout, Stencil, ViewPoints};
 use covmap::lanes::LANES;

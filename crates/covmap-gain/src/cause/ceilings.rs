@@ -13,9 +13,10 @@
 //! their bounds, and a decision that meets one evaluates all of its candidates.
 
 use super::fronts::FrontSums;
-use crate::belief::{Belief, PAD, lanes_at, padded};
+use crate::belief::{Belief, lanes_at, padded};
 use crate::evidence::{BlockGains, Evidence, ExcessEvidence};
 use crate::memory::Size;
+use crate::numbers::PAD;
 use crate::numbers::{as_f64, to_f32};
 use crate::view_points::groups_per_row;
 use covmap::Grid;

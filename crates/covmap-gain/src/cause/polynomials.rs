@@ -6,9 +6,10 @@
 
 use super::fronts::FrontSums;
 use crate::InformationGain;
-use crate::belief::{Belief, PAD, lanes_at, padded};
+use crate::belief::{Belief, lanes_at, padded};
 use crate::evidence::{BlockGains, Evidence, ExcessEvidence};
 use crate::memory::Size;
+use crate::numbers::PAD;
 use crate::numbers::{as_f64, to_f32};
 use crate::probes::ProbeHistograms;
 use crate::view_points::groups_per_row;

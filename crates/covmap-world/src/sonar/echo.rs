@@ -4,7 +4,8 @@
 //! point of every face, past the ends of faces, and at corners and edges make the result
 //! independent of how many rays there are, but for echoes by way of mirrors.
 
-use crate::geometry::{Face, Kind};
+use crate::faces::Face;
+use crate::feature::Kind;
 use crate::sonar::SonarPhysics;
 use crate::sonar::physics::{MOST_BOUNCES, MOST_RAYS};
 use crate::world::World;

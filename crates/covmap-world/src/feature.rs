@@ -1,7 +1,8 @@
 //! Where faces meet: concave corners, which answer every sonar, and convex edges.
 
 use crate::error::{MAX_PAIRS, WorldError};
-use crate::geometry::{Exposed, Face, Index};
+use crate::exposed::Exposed;
+use crate::faces::{Face, Index};
 use nalgebra::{Point2, Vector2};
 
 /// Choice: faces that turn by less than 30° into each other make neither a corner nor an

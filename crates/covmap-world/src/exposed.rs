@@ -3,7 +3,7 @@
 //! Where thousands of solids overlap, nearly all faces are buried, and what they would make with
 //! each other need not be looked at.
 
-use crate::geometry::{Bounds, Face};
+use crate::faces::{Bounds, Face};
 use crate::outline::Outline;
 use nalgebra::{Point2, Vector2};
 

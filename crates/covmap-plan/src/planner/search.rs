@@ -1,8 +1,8 @@
 //! Where candidates are searched, one place after the other.
 
+use super::Candidates;
 use crate::Planner;
 use crate::parameters::LeastChange;
-use crate::planner::Candidates;
 use covmap::{Cell, CoverageMap};
 
 /// Where candidates are searched.

@@ -1,6 +1,6 @@
 //! The straight faces of solids, and what a ray meets of them.
 
-use crate::geometry::Bounds;
+use crate::faces::Bounds;
 use crate::scenario::Surface;
 use nalgebra::{Point2, Vector2};
 
