@@ -79,7 +79,7 @@ fn draw() -> Result<Picture, Box<dyn std::error::Error>> {
     let mut picture = Picture::new(grid);
     picture
         .title("Office: most likely coverage")
-        .subtitle("IG_CL(0.3), seed 1: 13 scans, 31.4 m driven, 84.7 % of the cells finished")
+        .subtitle("IG_CL:0.3, seed 1: 13 scans, 31.4 m driven, 84.7 % of the cells finished")
         .cells(&map, |coverage| coverage_color(*coverage))
         .polyline(&driven, Rgb::BLUE, 3.0);
     for point in &driven[1..driven.len() - 1] {

@@ -13,7 +13,7 @@ fn bench(c: &mut Criterion) {
     let config = Config::b21r();
     let scenario: Scenario = ron::from_str(OFFICE).unwrap();
     let world = World::from_scenario(&scenario, config.sonar.surface).unwrap();
-    let mut group = c.benchmark_group("office, r = .1, IG_CL(.3)");
+    let mut group = c.benchmark_group("office, r = .1, IG_CL:0.3");
     for scans in [100, 110] {
         let limits = Limits { while_driving: None, max_scans: Some(scans) };
         let mission = covmap_lab::mission(&world, &config, None, limits).unwrap();

@@ -36,7 +36,7 @@ pub enum ConfigError {
 }
 
 impl Config {
-    /// The default: a B21r, r = .1 m, 3 m usable range, ε = .6, IG_CL(.1), and cones that
+    /// The default: a B21r, r = .1 m, 3 m usable range, ε = .6, IG_CL:0.1, and cones that
     /// shrink from a half-angle of 12.5° near the sensor to 7.5° at 2.9 m.
     pub fn b21r() -> Self {
         Self {

@@ -209,12 +209,14 @@ pub enum Fault {
     #[error("the trace is empty")]
     EmptyTrace,
     /// The trace was written by another version.
-    #[error("a trace of version {found}; this covmap reads {read}")]
+    #[error("a trace of version {found}; this covmap reads {oldest} to {newest}")]
     TraceVersion {
         /// The version of the trace.
         found: u32,
-        /// The version that is read.
-        read: u32,
+        /// The oldest version that is read.
+        oldest: u32,
+        /// The newest one.
+        newest: u32,
     },
     /// A scan of a trace does not fit to the ring.
     #[error("scan {number} has {ranges} ranges, but the ring has {beams} sensors")]

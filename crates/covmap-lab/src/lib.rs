@@ -68,6 +68,6 @@ pub use score::{Score, Truth};
 pub use series::{Accuracy, Errors, Measurements, Tally, corners, drawn_starts};
 pub use setup::{SetupError, mission};
 pub use summary::{CellCounts, Summary};
-pub use trace::{TRACE_VERSION, TraceHeader};
+pub use trace::{OLDEST_TRACE, TRACE_VERSION, TraceHeader};
 pub use trace_file::{Trace, TraceWriter, in_folder, read_header};
 pub use watch::Watch;

@@ -8,7 +8,9 @@ use nalgebra::Isometry2;
 use serde::{Deserialize, Serialize};
 
 /// The version of the trace's format.
-pub const TRACE_VERSION: u32 = 4;
+pub const TRACE_VERSION: u32 = 5;
+/// The oldest version that is read: its strategies are spelled `{"IgCl":{"alpha":0.3}}`.
+pub const OLDEST_TRACE: u32 = 4;
 
 /// The first line of a trace: all that is needed to repeat the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

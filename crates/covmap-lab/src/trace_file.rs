@@ -1,7 +1,7 @@
 //! The trace of a run in its file.
 
 use crate::error::{Fault, Result, about};
-use crate::{TRACE_VERSION, TraceHeader};
+use crate::{OLDEST_TRACE, TRACE_VERSION, TraceHeader};
 use covmap::CoverageMap;
 use covmap_explore::{Event, TraceHasher};
 use covmap_io::{FileError, JsonLines, read_json, read_json_lines};
@@ -128,8 +128,12 @@ impl Trace {
 pub fn read_header(path: &Path) -> Result<TraceHeader> {
     let empty = || about(path)(Fault::EmptyTrace);
     let Version { covmap_trace } = read_json_lines(path)?.next().ok_or_else(empty)??;
-    if covmap_trace != TRACE_VERSION {
-        return Err(about(path)(Fault::TraceVersion { found: covmap_trace, read: TRACE_VERSION }));
+    if !(OLDEST_TRACE..=TRACE_VERSION).contains(&covmap_trace) {
+        return Err(about(path)(Fault::TraceVersion {
+            found: covmap_trace,
+            oldest: OLDEST_TRACE,
+            newest: TRACE_VERSION,
+        }));
     }
     Ok(read_json_lines(path)?.next().ok_or_else(empty)??)
 }

@@ -15,7 +15,7 @@
 //!
 //! let strategy: Strategy = "IG_CL:0.3".parse()?;
 //! assert_eq!(strategy, Strategy::IgCl { alpha: 0.3 });
-//! assert_eq!(strategy.to_string(), "IG_CL(.3)");
+//! assert_eq!(strategy.to_string(), "IG_CL:0.3");
 //! # Ok::<(), covmap_plan::StrategyError>(())
 //! ```
 

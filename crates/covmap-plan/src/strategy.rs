@@ -2,13 +2,16 @@
 
 use covmap::short;
 use covmap_model::Counting;
-use serde::{Deserialize, Serialize};
+use serde::de::{Error, IgnoredAny};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
 /// How the next view-point is chosen.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+///
+/// In files, on the command line and in tables a strategy is spelled alike: `CL`, `IG`, `IG_WIN:RADIUS`,
+/// `IG_CL:ALPHA`, `COUNT:N`, `COUNT:N:D0`.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Strategy {
     /// The closest location, Eq. (12).
     Cl,
@@ -90,6 +93,11 @@ pub enum StrategyError {
         "`{0}` is no strategy: use CL, IG, IG_WIN:RADIUS, IG_CL:ALPHA, COUNT:N or COUNT:N:D0, as in IG_CL:0.3"
     )]
     Unknown(String),
+    /// In a file: something else than a text.
+    #[error(
+        "a strategy is spelled in quotes: \"CL\", \"IG\", \"IG_WIN:RADIUS\", \"IG_CL:ALPHA\", \"COUNT:N\" or \"COUNT:N:D0\""
+    )]
+    Unspelled,
     /// A number out of range.
     #[error("{name} is {}; it must lie in [{min}, {max}]", short(value))]
     Number {
@@ -109,7 +117,7 @@ impl FromStr for Strategy {
 
     fn from_str(text: &str) -> Result<Self, StrategyError> {
         let unknown = || StrategyError::Unknown(text.to_owned());
-        // As it is typed, `COUNT:50:2`, or as it is printed, `COUNT(50, 2)`.
+        // `COUNT:50:2`, or as earlier versions printed it, `COUNT(50, 2)`.
         let printed = text.strip_suffix(')').and_then(|text| text.split_once('('));
         let typed = printed.map(|(name, numbers)| {
             format!("{name}:{}", numbers.replace(',', ":").replace(' ', ""))
@@ -132,23 +140,56 @@ impl FromStr for Strategy {
     }
 }
 
-/// A number as the paper prints it: `.3`, `1.0`.
-fn as_printed(value: f64) -> String {
-    let text = format!("{value:?}");
-    text.strip_prefix("0.").map_or_else(|| text.clone(), |digits| format!(".{digits}"))
-}
-
 impl fmt::Display for Strategy {
-    /// As in Fig. 7 of the paper: `IG_CL(.3)`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Strategy::Cl => write!(f, "CL"),
             Strategy::Ig => write!(f, "IG"),
-            Strategy::IgWin { radius } => write!(f, "IG_WIN({})", as_printed(*radius)),
-            Strategy::IgCl { alpha } => write!(f, "IG_CL({})", as_printed(*alpha)),
-            Strategy::Count { times, half_distance: None } => write!(f, "COUNT({times})"),
-            Strategy::Count { times, half_distance: Some(d) } => write!(f, "COUNT({times}, {d})"),
+            Strategy::IgWin { radius } => write!(f, "IG_WIN:{radius}"),
+            Strategy::IgCl { alpha } => write!(f, "IG_CL:{alpha}"),
+            Strategy::Count { times, half_distance: None } => write!(f, "COUNT:{times}"),
+            Strategy::Count { times, half_distance: Some(d) } => write!(f, "COUNT:{times}:{d}"),
         }
+    }
+}
+
+impl Serialize for Strategy {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// A strategy in a file: as it is spelled, or as earlier versions wrote it.
+#[derive(Deserialize)]
+#[serde(untagged)]
+enum InFile {
+    Spelled(String),
+    Earlier(Earlier),
+    Other(IgnoredAny),
+}
+
+/// `IgCl(alpha: 0.3)`, and so on. `Cl` and `Ig` read like texts.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+enum Earlier {
+    IgWin { radius: f64 },
+    IgCl { alpha: f64 },
+    Count { times: f64, half_distance: Option<f64> },
+}
+
+impl<'de> Deserialize<'de> for Strategy {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let strategy = match InFile::deserialize(deserializer)? {
+            InFile::Spelled(text) => return text.parse().map_err(D::Error::custom),
+            InFile::Earlier(Earlier::IgWin { radius }) => Self::IgWin { radius },
+            InFile::Earlier(Earlier::IgCl { alpha }) => Self::IgCl { alpha },
+            InFile::Earlier(Earlier::Count { times, half_distance }) => {
+                Self::Count { times, half_distance }
+            }
+            InFile::Other(_) => return Err(D::Error::custom(StrategyError::Unspelled)),
+        };
+        strategy.validate().map_err(D::Error::custom)?;
+        Ok(strategy)
     }
 }
 
@@ -169,14 +210,16 @@ mod tests {
     }
 
     #[test]
-    fn strategies_are_printed_as_in_figure_7() {
-        let print = |text: &str| text.parse::<Strategy>().unwrap().to_string();
-        assert_eq!(print("cl"), "CL");
-        assert_eq!(print("IG_CL:0.3"), "IG_CL(.3)");
-        assert_eq!(print("IG_CL:1"), "IG_CL(1.0)");
-        assert_eq!(print("IG_CL:0"), "IG_CL(.0)");
-        assert_eq!(print("IG_WIN:2"), "IG_WIN(2.0)");
-        assert_eq!(print("COUNT:50:2"), "COUNT(50, 2)");
+    fn what_earlier_versions_printed_is_read() {
+        for (earlier, now) in [
+            ("cl", "CL"),
+            ("IG_CL(.3)", "IG_CL:0.3"),
+            ("IG_CL(1.0)", "IG_CL:1"),
+            ("IG_WIN(2.0)", "IG_WIN:2"),
+            ("COUNT(50, 2)", "COUNT:50:2"),
+        ] {
+            assert_eq!(earlier.parse::<Strategy>().unwrap().to_string(), now);
+        }
     }
 
     #[test]

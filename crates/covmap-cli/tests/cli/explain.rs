@@ -66,7 +66,7 @@ fn traces_that_lie_are_refused() {
     refuse("", "the trace is empty");
     refuse("{}\n", "trace.jsonl:1:");
     refuse("[1, 2\n", "trace.jsonl:1:");
-    refuse(&instead("\"covmap_trace\":4", "\"covmap_trace\":99"), "version 99");
+    refuse(&instead("\"covmap_trace\":5", "\"covmap_trace\":99"), "version 99");
     let width = "\"resolution\":0.2,\"width\":";
     refuse(&number_after(&good, width, "999999999"), "20000000 cells");
     refuse(&number_after(&good, width, "1"), "trace.jsonl");
@@ -84,7 +84,7 @@ fn traces_that_lie_are_refused() {
         refuse(&number_after(&good, "\"while_driving\":", step), &every);
     }
     refuse(&number_after(&good, "\"max_scans\":", "0"), "max_scans is 0");
-    refuse(&number_after(&good, "\"alpha\":", "1e308"), "the weight α of IG_CL is 1e308");
+    refuse(&instead("IG_CL:0.3", "IG_CL:1e308"), "the weight α of IG_CL is 1e308");
     refuse(
         &instead(first_scan, &first_scan.replace("\"ranges\":[", "\"ranges\":[\"NoEcho\",")),
         "25 ranges",

@@ -90,7 +90,7 @@ fn a_run_writes_every_file_and_ends_when_its_budget_is_spent() {
     assert_eq!(fields.len(), KEYS.len());
     assert_eq!(summary["ending"], "BudgetSpent");
     assert_eq!(summary["scans"], 30);
-    assert_eq!(summary["strategy"], "IG_CL(.1)");
+    assert_eq!(summary["strategy"], "IG_CL:0.1");
 }
 
 #[test]
@@ -193,7 +193,7 @@ fn a_foreign_folder_is_refused_and_one_of_ours_is_replaced() {
     assert_eq!(shell.json("run/summary.json")["scans"], 30);
     // Another run does not take its place without a word.
     let other = short_run().replace("30", "5");
-    shell.refuse(&other, &["run: holds another run (explore lab, IG_CL(.1), seed 1", "--force"]);
+    shell.refuse(&other, &["run: holds another run (explore lab, IG_CL:0.1, seed 1", "--force"]);
     shell.expect(&format!("{other} --force"), 3);
     assert!(!shell.path("run/note.txt").exists());
     assert_eq!(shell.json("run/summary.json")["scans"], 5);

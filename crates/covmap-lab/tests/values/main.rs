@@ -4,6 +4,7 @@
 
 mod rules;
 mod scores;
+mod strategies;
 mod tallies;
 
 use covmap::{CoverageMap, Grid, Raster};
