@@ -105,7 +105,7 @@ impl Row {
     /// Runs that differ in how often COUNT scans are one series.
     fn series(&self) -> String {
         let Summary { strategy, .. } = &self.summary;
-        let counts = strategy.starts_with("COUNT(");
+        let counts = strategy.starts_with("COUNT:");
         if counts { "COUNT".into() } else { strategy.clone() }
     }
 }

@@ -3,7 +3,7 @@
 use crate::{Mission, MissionError, ParameterError};
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
 use covmap_model::{Body, BodyEvent, Looks, ModelError, SensorModel};
-use covmap_plan::{BodyEvidence, CandidateRecord, CellStatus, Decision, Planner, Promise, Reach};
+use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Promise, Reach, Scoring};
 use covmap_sonar::Scan;
 use nalgebra::Point2;
 
@@ -159,10 +159,7 @@ impl Explorer {
     }
 
     /// The same by a strategy of one's own: see [`Planner::choose_by`].
-    pub fn decide_by(
-        &mut self,
-        strategy: impl FnOnce(&[CandidateRecord]) -> Option<usize>,
-    ) -> Option<Decision> {
+    pub fn decide_by(&mut self, strategy: &mut dyn Scoring) -> Option<Decision> {
         self.planner.choose_by(&self.map, self.cell, strategy)
     }
 

@@ -3,7 +3,7 @@
 use crate::{Ending, Event, Explorer, Mission, MissionError, Robot, Sensed, standing_place};
 use covmap::{Cell, CoverageMap, Raster};
 use covmap_model::BodyEvent;
-use covmap_plan::{CandidateRecord, CellStatus, Decision, Planner, Promise, Reach, turns};
+use covmap_plan::{CellStatus, Decision, Planner, Promise, Reach, Scoring, turns};
 use covmap_sonar::{Drive, Range, Scan};
 use nalgebra::{Isometry2, Point2};
 use std::error::Error;
@@ -92,8 +92,8 @@ pub fn explore<R: Robot>(
     Circle::new(mission, robot, hook, None)?.finished()
 }
 
-/// The same with a strategy of one's own, which is given the candidates of every decision and returns the
-/// place of one of them: see [`Planner::choose_by`]. A run whose strategy returns none is over.
+/// The same with a strategy of one's own, which scores the candidates of every decision: see [`Scoring`]. A run
+/// whose strategy scores none of them above −∞ is over.
 ///
 /// # Errors
 /// As [`explore`].
@@ -101,7 +101,7 @@ pub fn explore_by<R: Robot>(
     mission: &Mission,
     robot: &mut R,
     hook: &mut impl FnMut(&Event, &View<'_>) -> ControlFlow<()>,
-    strategy: &mut dyn FnMut(&[CandidateRecord]) -> Option<usize>,
+    strategy: &mut dyn Scoring,
 ) -> Result<Run, MissionError> {
     Circle::new(mission, robot, hook, Some(strategy))?.finished()
 }
@@ -117,9 +117,6 @@ enum Stop {
 /// What goes on until there is a reason to stop.
 type Flow<T = ()> = ControlFlow<Stop, T>;
 
-/// A strategy of one's own.
-type Own<'a> = &'a mut dyn FnMut(&[CandidateRecord]) -> Option<usize>;
-
 /// What a robot did, or why it failed.
 fn done<T, E: Error>(result: Result<T, E>) -> Flow<T> {
     match result {
@@ -133,7 +130,7 @@ struct Circle<'a, R, H> {
     mission: &'a Mission,
     robot: &'a mut R,
     hook: &'a mut H,
-    strategy: Option<Own<'a>>,
+    strategy: Option<&'a mut dyn Scoring>,
     explorer: Explorer,
     left_start: bool,
     /// The robot stands where a step ends: not yet, at a start that is off its cell's centre, nor where it
@@ -157,7 +154,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
         mission: &'a Mission,
         robot: &'a mut R,
         hook: &'a mut H,
-        strategy: Option<Own<'a>>,
+        strategy: Option<&'a mut dyn Scoring>,
     ) -> Result<Self, MissionError> {
         let explorer = Explorer::new(mission)?;
         Ok(Self {
@@ -192,7 +189,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
     fn next(&mut self) -> Option<Decision> {
         match &mut self.strategy {
             None => self.explorer.decide(),
-            Some(own) => self.explorer.decide_by(own),
+            Some(own) => self.explorer.decide_by(&mut **own),
         }
     }
 

@@ -12,9 +12,8 @@ use covmap_world::{Extent, Scenario, World};
 use std::ops::ControlFlow;
 
 /// The most gain for a metre of way.
-fn per_metre(candidates: &[CandidateRecord]) -> Option<usize> {
-    let rate = |i: &usize| candidates[*i].gain / (candidates[*i].cost + 0.1);
-    (0..candidates.len()).max_by(|a, b| rate(a).total_cmp(&rate(b)))
+fn per_metre(candidate: &CandidateRecord) -> f64 {
+    candidate.gain / (candidate.cost + 0.1)
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -26,7 +25,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mission = mission(&world, &config, None, Limits::default())?;
     let mut robot = SimulatedRobot::new(&world, &config, 1)?;
     let mut on = |_: &Event, _: &View<'_>| ControlFlow::Continue(());
-    let run = explore_by(&mission, &mut robot, &mut on, &mut per_metre)?;
+    let run =
+        explore_by(&mission, &mut robot, &mut on, &mut (per_metre as fn(&CandidateRecord) -> f64))?;
     println!("{:?} after {} scans, {:.1} m", run.ending, run.scans.len(), run.path_length);
     Ok(())
 }

@@ -269,11 +269,7 @@ fn a_run_by_a_strategy_from_outside_ends_as_well() {
     let mission = covmap_lab::mission(&world, &config, None, Limits::default()).unwrap();
     let mut robot = SimulatedRobot::new(&world, &config, 1).unwrap();
     let mut random = stream(1, "strategy", 0);
-    #[allow(clippy::cast_possible_truncation, reason = "a few hundred candidates")]
-    let mut any = |candidates: &[CandidateRecord]| {
-        assert!(!candidates.is_empty());
-        Some((uniform(&mut random) * candidates.len() as f64) as usize)
-    };
+    let mut any = |_: &CandidateRecord| uniform(&mut random);
     let mut on = |_: &Event, _: &View<'_>| ControlFlow::Continue(());
     let run = explore_by(&mission, &mut robot, &mut on, &mut any).unwrap();
     assert_eq!(run.ending, Ending::Explored);

@@ -4,7 +4,7 @@
 //! evaluated is above its bound, all candidates are evaluated; a candidate that was passed over
 //! because its bound is too low, while all that were evaluated keep theirs, stays passed over.
 
-use crate::decision::{Contest, REPORTED, Score};
+use crate::decision::{Contest, REPORTED};
 use crate::parameters::LeastChange;
 use crate::{CandidateRecord, Planner};
 use covmap::CoverageMap;
@@ -21,10 +21,10 @@ impl Planner {
     pub(crate) fn fill_and_pass_over(
         &mut self,
         map: &CoverageMap,
-        contest: &mut Contest,
+        contest: &mut Contest<'_>,
         least: Option<LeastChange>,
     ) {
-        if contest.score != Score::Closest {
+        if contest.scoring.uses_gain() {
             let all = self.view_points(&contest.records);
             self.gains.refresh_bounds(&all);
         } else if least.is_none() {
@@ -49,7 +49,7 @@ impl Planner {
 
     /// The places of candidates whose promise, or its bound, is not enough; none where cells are not told
     /// apart.
-    fn known_in_vain(&self, contest: &Contest, least: LeastChange) -> Vec<usize> {
+    fn known_in_vain(&self, contest: &Contest<'_>, least: LeastChange) -> Vec<usize> {
         let index = |place: &usize| self.grid.index(contest.records[*place].cell);
         let is_in_vain = |i: usize| self.gains.promise(i) < least.scan;
         contest.left().filter(|place| index(place).is_some_and(is_in_vain)).collect()
@@ -57,15 +57,20 @@ impl Planner {
 
     /// Of the best, the places of those that are evaluated and do not promise enough by the literal
     /// equations, which are too slow to ask them of all.
-    fn best_in_vain(&self, map: &CoverageMap, contest: &Contest, least: LeastChange) -> Vec<usize> {
+    fn best_in_vain(
+        &self,
+        map: &CoverageMap,
+        contest: &Contest<'_>,
+        least: LeastChange,
+    ) -> Vec<usize> {
+        let records = &contest.records;
         let is_in_vain = |place: &usize| {
-            let index = self.grid.index(contest.records[*place].cell);
+            let index = self.grid.index(records[*place].cell);
             index.is_some_and(|i| self.gains.is_exact(i) && !self.promises(map, i, least))
         };
         let mut places: Vec<usize> = contest.left().collect();
-        let better = |a: &usize, b: &usize| {
-            contest.records[*b].score.total_cmp(&contest.records[*a].score).then(a.cmp(b))
-        };
+        let better =
+            |a: &usize, b: &usize| records[*b].score.total_cmp(&records[*a].score).then(a.cmp(b));
         places.sort_by(better);
         places.truncate(REPORTED);
         places.into_par_iter().filter(is_in_vain).collect()
@@ -108,19 +113,31 @@ impl Planner {
     /// Fills in the scores of all records, with the gains of those that may have the largest gain,
     /// and may be among the best reported; for the others, with an upper bound in place of the
     /// gain. So whatever is close to the best by less than what the fast gains are off is evaluated.
-    fn fill_deciding_gains(&mut self, contest: &mut Contest) {
-        let (all, score) = (self.view_points(&contest.records), contest.score);
+    fn fill_deciding_gains(&mut self, contest: &mut Contest<'_>) {
+        let all = self.view_points(&contest.records);
+        if contest.scoring.uncertainty(&contest.records, GAIN_TOLERANCE).is_none() {
+            self.gains.refresh_gains(&all);
+            self.take_gains(contest);
+            return;
+        }
+        let uses_gain = contest.scoring.uses_gain();
         self.gains.take_exceeded();
-        let largest = |records: &[CandidateRecord]| {
-            GAIN_TOLERANCE * records.iter().map(|r| r.gain.abs()).fold(0.0, f64::max)
-        };
-        if score != Score::Closest {
+        if uses_gain {
             // Eq. (16) divides by the largest gain, as does what is told of IG: this one first.
+            let largest = |contest: &Contest<'_>| {
+                let gains = contest.records.iter().map(|r| r.gain.abs());
+                GAIN_TOLERANCE * gains.fold(0.0, f64::max)
+            };
             self.settle(contest, &all, 1, |record| record.gain, largest);
         }
-        let off = |records: &[CandidateRecord]| score.uncertainty(records, GAIN_TOLERANCE);
-        self.settle(contest, &all, REPORTED, |record| record.score, off);
-        if score != Score::Closest && self.gains.take_exceeded() {
+        self.settle(
+            contest,
+            &all,
+            REPORTED,
+            |record| record.score,
+            |contest| contest.uncertainty(),
+        );
+        if uses_gain && self.gains.take_exceeded() {
             self.gains.refresh_gains(&all);
             self.take_gains(contest);
         }
@@ -130,16 +147,17 @@ impl Planner {
     /// both may be `off`.
     fn settle(
         &mut self,
-        contest: &mut Contest,
+        contest: &mut Contest<'_>,
         all: &ViewPoints,
         count: usize,
         key: impl Fn(&CandidateRecord) -> f64,
-        off: impl Fn(&[CandidateRecord]) -> f64,
+        off: impl Fn(&Contest<'_>) -> f64,
     ) {
         for turn in 0.. {
             let is_exact = self.take_gains(contest);
+            let off = off(contest);
             let records = &contest.records;
-            let mut doubtful = in_doubt(records, &is_exact, count, &key, off(records));
+            let mut doubtful = in_doubt(records, &is_exact, count, &key, off);
             if doubtful.is_empty() {
                 return;
             }
@@ -162,8 +180,8 @@ impl Planner {
     }
 
     /// Fills in gains, or bounds, and scores. Returns which are gains.
-    fn take_gains(&self, contest: &mut Contest) -> Vec<bool> {
-        let weighs = contest.score != Score::Closest;
+    fn take_gains(&self, contest: &mut Contest<'_>) -> Vec<bool> {
+        let weighs = contest.scoring.uses_gain();
         let take = |record: &mut CandidateRecord| {
             let Some(index) = self.grid.index(record.cell) else { return true };
             let is_exact = self.gains.is_exact(index);

@@ -1,54 +1,12 @@
 //! Choosing one of the candidates: Eq. (12), (15) and (16).
 
-use covmap::Cell;
-use serde::{Deserialize, Serialize};
+use crate::{CandidateRecord, Scoring, Situation};
+use covmap_gain::GAIN_TOLERANCE;
 
 /// How many candidates a decision reports.
 pub(crate) const REPORTED: usize = 5;
 
-/// A candidate view-point with all that speaks for and against it.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct CandidateRecord {
-    /// The view-point l.
-    pub cell: Cell,
-    /// E\[I(l)\] \[nats\].
-    pub gain: f64,
-    /// d_c(l, x) \[m\]; for IG_CL with what turns cost, `planner.turn_cost`.
-    pub cost: f64,
-    /// The first term of Eq. (16); for other strategies with α = 1.
-    pub gain_term: f64,
-    /// The second term of Eq. (16), without its sign.
-    pub cost_term: f64,
-    /// What the strategy maximises: the negative cost for CL, the gain for IG and IG_WIN,
-    /// the bracket of Eq. (16) for IG_CL.
-    pub score: f64,
-}
-
-/// A decision that explains itself.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Decision {
-    /// The chosen view-point.
-    pub target: Cell,
-    /// The corners of the way there, cells between whose centres it leads straight, without the one the
-    /// robot is in, with the target; empty if the robot stays in its cell.
-    pub path: Vec<Cell>,
-    /// The cells of the passage that the robot tries, though they look blocked: it can reach
-    /// no candidate but beyond them. Mostly none.
-    pub passage: Vec<Cell>,
-    /// No scan is worth its while: this one looks at what keeps the robot off more ground.
-    pub towards_ground: bool,
-    /// The number of candidates, |L(c)|.
-    pub candidates: usize,
-    /// How many of them have E\[I\] < 0, of those that were evaluated: of most candidates an upper
-    /// bound tells that others are better.
-    pub negative_gains: usize,
-    /// How many were so close to the best that the literal equations decided between them.
-    pub decided_by_oracle: usize,
-    /// The five best.
-    pub best: Vec<CandidateRecord>,
-}
-
-/// How a strategy scores candidates.
+/// How the strategies of the paper score candidates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Score {
     /// argmin d_c, Eq. (12).
@@ -68,7 +26,7 @@ impl Score {
     ///
     /// with both maxima over the same candidates. Choice: where no gain is positive the
     /// first term is 0 for all, and where all costs are 0 the second.
-    pub(crate) fn apply(self, candidates: &mut [CandidateRecord]) {
+    pub(crate) fn fill(self, candidates: &mut [CandidateRecord]) {
         let largest = |f: fn(&CandidateRecord) -> f64| candidates.iter().map(f).fold(0.0, f64::max);
         let (max_gain, max_cost) = (largest(|c| c.gain), largest(|c| c.cost));
         let share = |value: f64, max: f64| if max > 0.0 { value / max } else { 0.0 };
@@ -83,13 +41,17 @@ impl Score {
             };
         }
     }
+}
 
-    /// How much a score may be off if every gain may be off by `tolerance` times the largest
-    /// absolute gain.
-    pub(crate) fn uncertainty(self, candidates: &[CandidateRecord], tolerance: f64) -> f64 {
+impl Scoring for Score {
+    fn score(&mut self, _: &Situation<'_>, candidates: &mut [CandidateRecord]) {
+        self.fill(candidates);
+    }
+
+    fn uncertainty(&self, candidates: &[CandidateRecord], tolerance: f64) -> Option<f64> {
         let largest = candidates.iter().map(|c| c.gain.abs()).fold(0.0, f64::max);
         let positive = candidates.iter().map(|c| c.gain).fold(0.0, f64::max);
-        match self {
+        Some(match self {
             Score::Closest => 0.0,
             Score::Gain => tolerance * largest,
             Score::Weighted(alpha) if positive > 0.0 => {
@@ -97,35 +59,48 @@ impl Score {
                 alpha * tolerance * largest / positive * (1.0 + largest / positive)
             }
             Score::Weighted(_) => 0.0,
-        }
+        })
+    }
+
+    fn uses_gain(&self) -> bool {
+        *self != Score::Closest
     }
 }
 
 /// The candidates of a decision, in row-major order of cells, and which of them are passed over:
 /// they count for the maxima of Eq. (16), but are not chosen.
-#[derive(Debug)]
-pub(crate) struct Contest {
+pub(crate) struct Contest<'a> {
     pub(crate) records: Vec<CandidateRecord>,
-    pub(crate) score: Score,
+    pub(crate) scoring: &'a mut dyn Scoring,
+    situation: Situation<'a>,
     passed_over: Vec<bool>,
 }
 
-impl Contest {
-    pub(crate) fn new(records: Vec<CandidateRecord>, score: Score) -> Self {
+impl<'a> Contest<'a> {
+    pub(crate) fn new(
+        records: Vec<CandidateRecord>,
+        scoring: &'a mut dyn Scoring,
+        situation: Situation<'a>,
+    ) -> Self {
         let passed_over = vec![false; records.len()];
-        let mut contest = Self { records, score, passed_over };
+        let mut contest = Self { records, scoring, situation, passed_over };
         contest.apply();
         contest
     }
 
     /// Scores anew.
     pub(crate) fn apply(&mut self) {
-        self.score.apply(&mut self.records);
+        self.scoring.score(&self.situation, &mut self.records);
         for (record, passed_over) in self.records.iter_mut().zip(&self.passed_over) {
             if *passed_over {
                 record.score = f64::NEG_INFINITY;
             }
         }
+    }
+
+    /// How much a score may be off by what the fast gains are off; 0 where all of them are evaluated.
+    pub(crate) fn uncertainty(&self) -> f64 {
+        self.scoring.uncertainty(&self.records, GAIN_TOLERANCE).unwrap_or(0.0)
     }
 
     /// Passes over a candidate.
@@ -139,10 +114,11 @@ impl Contest {
         (0..self.records.len()).filter(|place| !self.passed_over[*place])
     }
 
-    /// The place of the best score; a tie is the first.
+    /// The place of the best score; a tie is the first, and −∞ is none.
     pub(crate) fn best(&self) -> Option<usize> {
         let score = |place: usize| self.records[place].score;
-        self.left().fold(None, |best: Option<usize>, i| match best {
+        let left = self.left().filter(|place| score(*place) > f64::NEG_INFINITY);
+        left.fold(None, |best: Option<usize>, i| match best {
             Some(b) if score(i).total_cmp(&score(b)).is_le() => Some(b),
             _ => Some(i),
         })
@@ -153,6 +129,9 @@ impl Contest {
 #[allow(clippy::float_cmp, reason = "tests compare exact values")]
 mod tests {
     use super::*;
+    use crate::travel_costs;
+    use covmap::{Cell, CoverageMap, Grid, Steps};
+    use nalgebra::Point2;
     use proptest::prelude::*;
 
     fn table(values: &[(f64, f64)]) -> Vec<CandidateRecord> {
@@ -167,19 +146,34 @@ mod tests {
         values.iter().enumerate().map(record).collect()
     }
 
+    /// What comes of a contest in an empty place, where no way leads.
+    fn contest<T>(
+        mut score: Score,
+        values: &[(f64, f64)],
+        then: impl FnOnce(&mut Contest<'_>) -> T,
+    ) -> T {
+        let grid = Grid::new(Point2::origin(), 1.0, 1, 1).unwrap();
+        let map = CoverageMap::new(grid, 2).unwrap();
+        let from = Cell::new(0, 0);
+        let ways = travel_costs(Steps::between(&grid, |_| true), from);
+        let situation = Situation { map: &map, from, ways: &ways };
+        then(&mut Contest::new(table(values), &mut score, situation))
+    }
+
     fn choose(score: Score, values: &[(f64, f64)]) -> Option<usize> {
-        Contest::new(table(values), score).best()
+        contest(score, values, |contest| contest.best())
     }
 
     #[test]
     fn who_is_passed_over_still_counts_for_the_maxima() {
-        let mut contest =
-            Contest::new(table(&[(1.0, 1.0), (10.0, 8.0), (5.0, 2.0)]), Score::Weighted(1.0));
-        contest.pass_over(2);
-        contest.apply();
-        assert_eq!(contest.best(), Some(1));
-        assert_eq!(contest.records[0].gain_term, 0.1);
-        assert_eq!(contest.left().collect::<Vec<_>>(), [0, 1]);
+        let values = [(1.0, 1.0), (10.0, 8.0), (5.0, 2.0)];
+        contest(Score::Weighted(1.0), &values, |contest| {
+            contest.pass_over(2);
+            contest.apply();
+            assert_eq!(contest.best(), Some(1));
+            assert_eq!(contest.records[0].gain_term, 0.1);
+            assert_eq!(contest.left().collect::<Vec<_>>(), [0, 1]);
+        });
     }
 
     #[test]

@@ -19,6 +19,7 @@
 //! # Ok::<(), covmap_plan::StrategyError>(())
 //! ```
 
+mod candidate;
 mod certificate;
 mod deciding;
 mod decision;
@@ -26,11 +27,11 @@ mod exploration;
 mod ground;
 mod measured;
 mod memory;
-mod outside;
 mod parameters;
 mod passage;
 mod planner;
 mod reach;
+mod scoring;
 mod strategy;
 mod travel_cost;
 mod traversable;
@@ -38,8 +39,8 @@ mod turning;
 mod window;
 mod windowed;
 
+pub use candidate::{CandidateRecord, Decision};
 pub use certificate::Promise;
-pub use decision::{CandidateRecord, Decision};
 pub use exploration::CellStatus;
 pub use memory::planner_bytes;
 pub use parameters::{
@@ -47,6 +48,7 @@ pub use parameters::{
 };
 pub use planner::Planner;
 pub use reach::Reach;
+pub use scoring::{Scoring, Situation};
 pub use strategy::{Strategy, StrategyError};
 pub use travel_cost::{TravelCosts, travel_costs};
 pub use turning::turns;

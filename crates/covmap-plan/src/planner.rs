@@ -1,7 +1,7 @@
 //! The planner: one owner of what is explored, what stalls, and what was computed before.
 
 mod cost;
-pub(crate) mod search;
+mod search;
 
 use crate::decision::{Contest, REPORTED, Score};
 use crate::exploration::{CountedScan, Exploration};
@@ -14,6 +14,7 @@ use crate::{
     BodyEvidence, CandidateRecord, Decision, PlannerError, PlannerParameters, Scope, Strategy,
     TravelCosts, travel_costs,
 };
+use crate::{Scoring, Situation};
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
 use covmap_gain::{
     GAIN_TOLERANCE, GainCache, RangePrediction, Stencil, ViewPoints, expected_information_gain,
@@ -316,7 +317,7 @@ impl Planner {
         }
         let mut records = self.records(&candidates, from);
         self.fill_gains(&mut records);
-        self.score().apply(&mut records);
+        self.score().fill(&mut records);
         records
     }
 
@@ -328,20 +329,32 @@ impl Planner {
         }
     }
 
-    /// Chooses the next view-point for a robot in the cell `from`; `None` if there is no
-    /// candidate: nothing is open, and no passage is left to try.
+    /// Chooses the next view-point for a robot in the cell `from` by the strategy of the parameters; `None` if
+    /// there is no candidate: nothing is open, and no passage is left to try.
     ///
     /// # Panics
     /// If the robot's cell lies outside of the grid.
     pub fn choose(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
+        let mut score = self.score();
         // On a thread of the pool, what shares its work out need not wait for other threads.
-        rayon::scope(|_| self.choose_here(map, from))
+        rayon::scope(|_| self.choose_by(map, from, &mut score))
     }
 
-    fn choose_here(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
+    /// The same by a strategy of one's own. It is given all view-points with a reason to measure there, with
+    /// their gains and costs; those at which a scan is not worth its while are passed over, whatever
+    /// their score.
+    ///
+    /// # Panics
+    /// If the robot's cell lies outside of the grid.
+    pub fn choose_by(
+        &mut self,
+        map: &CoverageMap,
+        from: Cell,
+        strategy: &mut dyn Scoring,
+    ) -> Option<Decision> {
         Search::IN_ORDER.into_iter().find_map(|search| {
             let (candidates, least) = self.searched(map, from, search)?;
-            let decision = self.choose_among(map, from, &candidates, least)?;
+            let decision = self.choose_among((map, from), &candidates, least, strategy)?;
             Some(Decision { towards_ground: search == Search::TowardsGround, ..decision })
         })
     }
@@ -349,29 +362,20 @@ impl Planner {
     /// Chooses one of some candidates; `None` if all of them would measure in vain.
     fn choose_among(
         &mut self,
-        map: &CoverageMap,
-        from: Cell,
+        (map, from): (&CoverageMap, Cell),
         candidates: &Candidates,
         least: Option<LeastChange>,
+        strategy: &mut dyn Scoring,
     ) -> Option<Decision> {
-        let with_gain = self.parameters.strategy.uses_gain();
-        let mut contest = Contest::new(self.records(candidates, from), self.score());
+        let uses_gain = strategy.uses_gain();
+        let situation = Situation { map, from, ways: &candidates.costs };
+        let mut contest = Contest::new(self.records(candidates, from), strategy, situation);
         self.fill_and_pass_over(map, &mut contest, least);
-        let decided_by_oracle = if with_gain { self.decide_ties(map, &mut contest) } else { 0 };
+        let decided_by_oracle = if uses_gain { self.decide_ties(map, &mut contest) } else { 0 };
         let target = contest.records[contest.best()?].cell;
         let records: Vec<_> = contest.left().map(|place| contest.records[place]).collect();
-        self.decision(candidates, from, (target, records, decided_by_oracle))
-    }
-
-    /// The decision for a target among some records; `decided_by_oracle` of them were told apart by the oracle.
-    pub(crate) fn decision(
-        &mut self,
-        candidates: &Candidates,
-        from: Cell,
-        (target, records, decided_by_oracle): (Cell, Vec<CandidateRecord>, usize),
-    ) -> Option<Decision> {
         let negative_gains = records.iter().filter(|r| r.gain < 0.0).count();
-        let best = self.report(records);
+        let best = self.report(records, uses_gain);
         let mut path = candidates.costs.path_to(target)?;
         if candidates.passage.is_empty() {
             path = self.traversable.pulled_tight(from, &path);
@@ -393,7 +397,11 @@ impl Planner {
 
     /// The five best candidates; where the strategy needs no gains they are computed for
     /// these.
-    fn report(&mut self, mut records: Vec<CandidateRecord>) -> Vec<CandidateRecord> {
+    fn report(
+        &mut self,
+        mut records: Vec<CandidateRecord>,
+        uses_gain: bool,
+    ) -> Vec<CandidateRecord> {
         let better = |a: &CandidateRecord, b: &CandidateRecord| {
             b.score.total_cmp(&a.score).then(a.cell.cmp(&b.cell))
         };
@@ -402,7 +410,7 @@ impl Planner {
             records.truncate(REPORTED);
         }
         records.sort_by(better);
-        if !self.parameters.strategy.uses_gain() {
+        if !uses_gain {
             self.fill_gains(&mut records);
             let largest = records.iter().map(|r| r.gain).fold(0.0, f64::max);
             let share = |gain: f64| if largest > 0.0 { gain / largest } else { 0.0 };
@@ -413,8 +421,8 @@ impl Planner {
 
     /// Replaces the gains that could decide by those of the literal equations, and scores
     /// anew. Returns how many there were, where there was more than one.
-    fn decide_ties(&self, map: &CoverageMap, contest: &mut Contest) -> usize {
-        let doubt = 2.0 * contest.score.uncertainty(&contest.records, GAIN_TOLERANCE);
+    fn decide_ties(&self, map: &CoverageMap, contest: &mut Contest<'_>) -> usize {
+        let doubt = 2.0 * contest.uncertainty();
         let records = &mut contest.records;
         let top = |f: fn(&CandidateRecord) -> f64, records: &[CandidateRecord]| {
             records.iter().map(f).fold(f64::NEG_INFINITY, f64::max)

@@ -162,7 +162,7 @@ impl Serialize for Strategy {
 /// A strategy in a file: as it is spelled, or as earlier versions wrote it.
 #[derive(Deserialize)]
 #[serde(untagged)]
-enum InFile {
+enum Written {
     Spelled(String),
     Earlier(Earlier),
     Other(IgnoredAny),
@@ -179,14 +179,14 @@ enum Earlier {
 
 impl<'de> Deserialize<'de> for Strategy {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let strategy = match InFile::deserialize(deserializer)? {
-            InFile::Spelled(text) => return text.parse().map_err(D::Error::custom),
-            InFile::Earlier(Earlier::IgWin { radius }) => Self::IgWin { radius },
-            InFile::Earlier(Earlier::IgCl { alpha }) => Self::IgCl { alpha },
-            InFile::Earlier(Earlier::Count { times, half_distance }) => {
+        let strategy = match Written::deserialize(deserializer)? {
+            Written::Spelled(text) => return text.parse().map_err(D::Error::custom),
+            Written::Earlier(Earlier::IgWin { radius }) => Self::IgWin { radius },
+            Written::Earlier(Earlier::IgCl { alpha }) => Self::IgCl { alpha },
+            Written::Earlier(Earlier::Count { times, half_distance }) => {
                 Self::Count { times, half_distance }
             }
-            InFile::Other(_) => return Err(D::Error::custom(StrategyError::Unspelled)),
+            Written::Other(_) => return Err(D::Error::custom(StrategyError::Unspelled)),
         };
         strategy.validate().map_err(D::Error::custom)?;
         Ok(strategy)

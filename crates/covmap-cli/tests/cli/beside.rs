@@ -18,7 +18,7 @@ fn runs_are_laid_side_by_side_with_their_accuracy() {
     assert_eq!(lines[4..], ["both"]);
     let table = fs::read_to_string(shell.path("both/runs.csv")).unwrap();
     assert_eq!(table.lines().count(), 4);
-    assert!(table.contains("run-5,lab,0.2,COUNT(2),1,5,"), "{table}");
+    assert!(table.contains("run-5,lab,0.2,COUNT:2,1,5,"), "{table}");
     // One line for CL, one for COUNT.
     let svg = fs::read_to_string(shell.path("both/runs.svg")).unwrap();
     assert!(svg.contains(">CL<") && svg.contains(">COUNT<"));

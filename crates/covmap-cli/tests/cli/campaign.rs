@@ -20,7 +20,7 @@ fn campaign(replaced: &[(&str, &str)]) -> String {
     name: \"tiny\",
     worlds: [(name: \"room\", file: \"room.ron\", resolution: 0.2, turn: 7.0, shift: (0.05, 0.0))],
     settings: [(name: \"b21r\", config: {:?}, max_scans: 12)],
-    strategies: ["CL", "IG_CL:0.3", "COUNT:3:2"],
+    strategies: [\"CL\", \"IG_CL:0.3\", \"COUNT:3:2\"],
     starts: Drawn(count: 2, seed: 1),
     seeds: (first: 5, count: 2),
     metrics: [\"scans\", \"path_length_m\", \"cells.resolved\"],
@@ -235,9 +235,9 @@ fn the_numbers_of_a_strategy_and_the_runs_cut_short_have_columns() {
         for (strategy, numbers) in [
             ("CL", ["", "", "", ""]),
             ("IG_CL:0.3", ["0.3", "", "", ""]),
-            ("IG_WIN(2.5)", ["", "2.5", "", ""]),
-            ("COUNT(3)", ["", "", "3", ""]),
-            ("COUNT(3, 2)", ["", "", "3", "2"]),
+            ("IG_WIN:2.5", ["", "2.5", "", ""]),
+            ("COUNT:3", ["", "", "3", ""]),
+            ("COUNT:3:2", ["", "", "3", "2"]),
         ] {
             let mut mine = rows.iter().filter(|(name, _)| name == strategy).peekable();
             assert!(mine.peek().is_some(), "{name}: {strategy}");

@@ -76,7 +76,7 @@ fn chart(
     strategies: &[Strategy],
     (metric, title, axis): (&str, &str, &str),
 ) -> Chart {
-    let names = strategies.iter().map(|strategy| strategy.to_string().replace('(', "\n("));
+    let names = strategies.iter().map(|strategy| strategy.to_string().replacen(':', "\n", 1));
     let series = |(index, (name, runs)): (usize, &(&str, &Runs))| {
         // Beside each other.
         let aside = 0.16 * (index as f64 - 0.5 * (columns.len() as f64 - 1.0));
