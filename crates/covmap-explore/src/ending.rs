@@ -18,7 +18,7 @@ pub enum Ending {
     NothingHeard,
     /// The hook stopped the run.
     Interrupted,
-    /// The robot failed, and something may still be open: [`Run::failure`] says why.
+    /// The robot failed, and something may still be open: [`Run::failure`](crate::Run::failure) says why.
     RobotFailed,
 }
 
