@@ -94,6 +94,9 @@ impl Explorer {
             scans: 0,
             happened: Vec::new(),
         };
+        if mission.limits.while_driving.is_some() {
+            explorer.planner.measure_while_driving();
+        }
         explorer.moved(at);
         explorer.planner.stand_on(cell);
         Ok(explorer)

@@ -3,7 +3,7 @@
 use crate::{Ending, Event, Explorer, Mission, MissionError, Robot, Sensed, standing_place};
 use covmap::{Cell, CoverageMap, Raster};
 use covmap_model::BodyEvent;
-use covmap_plan::{CellStatus, Decision, Planner, Promise, Reach, Scoring, turns};
+use covmap_plan::{CellStatus, Decision, InPlace, Planner, Promise, Reach, Scoring, turns};
 use covmap_sonar::{Drive, Range, Scan};
 use nalgebra::{Isometry2, Point2};
 use std::error::Error;
@@ -106,6 +106,12 @@ pub fn explore_by<R: Robot>(
     Circle::new(mission, robot, hook, Some(strategy))?.finished()
 }
 
+/// Ways that differ by less are the same \[m\].
+const ROUNDING: f64 = 1e-9;
+/// After this number of arrivals without a scan the robot measures in any case, so that a run ends even if
+/// scans are to be farther apart than there is way to drive.
+const MOST_ARRIVALS: usize = 1000;
+
 /// Why a run does not go on.
 enum Stop {
     /// The hook said so.
@@ -141,6 +147,8 @@ struct Circle<'a, R, H> {
     cramped: bool,
     /// How far the robot drove since it last measured [m].
     since_scan: f64,
+    /// Where it arrived since, without measuring.
+    arrivals: usize,
     scans: Vec<Scan>,
     trajectory: Vec<Point2<f64>>,
     path_length: f64,
@@ -168,6 +176,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
             settled: false,
             cramped: false,
             since_scan: 0.0,
+            arrivals: 0,
             scans: Vec::new(),
             path_length: 0.0,
             decisions: 0,
@@ -201,11 +210,25 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
             }
             let (path, stays) = (decision.path.clone(), decision.path.is_empty());
             self.decide(decision)?;
-            if (self.drive(&path)? || stays) && !self.is_budget_spent() {
+            let arrives = self.drive(&path)?;
+            if (stays || (arrives && self.is_due())) && !self.is_budget_spent() {
                 self.scan()?;
             }
         }
         ControlFlow::Continue(self.ending())
+    }
+
+    /// Whether a scan is due where the robot arrives: always, but where scans are made every so many metres
+    /// of way and nowhere else.
+    fn is_due(&mut self) -> bool {
+        let Mission { config, limits, .. } = self.mission;
+        let every =
+            limits.while_driving.filter(|_| config.planner.in_place == InPlace::AtViewPoints);
+        self.arrivals += 1;
+        let is_due = every.is_none_or(|every| self.since_scan >= every - ROUNDING)
+            || self.arrivals >= MOST_ARRIVALS;
+        self.arrivals *= usize::from(!is_due);
+        is_due
     }
 
     /// How a run ended after which nothing is open.

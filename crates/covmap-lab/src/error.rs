@@ -1,6 +1,6 @@
 //! Why work with files of the laboratory fails.
 
-use crate::{ConfigError, SetupError};
+use crate::{ConfigError, OverrideError, SetupError};
 use covmap::{GridError, MapError, ReadOutError};
 use covmap_explore::{MissionError, ParameterError};
 use covmap_fit::{AxisError, FitError};
@@ -91,6 +91,9 @@ pub enum Fault {
     /// A fit.
     #[error("the fit cannot begin: {0}")]
     Fit(#[from] FitError),
+    /// A parameter that is set by its path.
+    #[error("explorer_overrides: {0}")]
+    Override(#[from] OverrideError),
     /// Too much memory.
     #[error(transparent)]
     Memory(#[from] MemoryError),

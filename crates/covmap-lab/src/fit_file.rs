@@ -14,6 +14,8 @@ use covmap_statistics::{stream, uniform};
 use covmap_world::{Surface, World};
 use rayon::prelude::*;
 use serde::Deserialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -29,6 +31,10 @@ pub struct FitFile {
     /// Who explores the simulated worlds; without it `config`. One explorer for several fits gives
     /// them the same scans.
     pub explorer: Option<PathBuf>,
+    /// Parameters of the explorer that differ from its file, by their paths, such as
+    /// `planner.scan_spacing`: see [`Config::overridden`].
+    #[serde(default)]
+    pub explorer_overrides: BTreeMap<String, Value>,
     /// The side of a cell where an example does not say another \[m\].
     pub resolution: f64,
     /// Seed of the starts.
@@ -120,7 +126,12 @@ impl FitPlan {
         let file: FitFile = read_ron(path)?;
         let begin = Named::read(path, &file.config, file.resolution)?;
         let explorer = file.explorer.as_ref().unwrap_or(&file.config);
-        let explorer = Named::read(path, explorer, file.resolution)?;
+        let mut explorer = Named::read(path, explorer, file.resolution)?;
+        for (parameter, value) in &file.explorer_overrides {
+            let overridden = explorer.config.overridden(parameter, value);
+            explorer.config = overridden.map_err(about(path))?;
+        }
+        files::check(&explorer.config, &explorer.file)?;
         if begin.config.robot != explorer.config.robot {
             return Err(about(path)(Fault::OtherRobot {
                 explorer: explorer.file,

@@ -97,7 +97,8 @@ impl Planner {
         while let Some(at) = front.pop() {
             let cell = self.grid.cell(at);
             // By the paper's words, what is known and no place to stand is out of scope for good.
-            let in_scope = self.parameters().scope == Scope::Observable || !map.is_known(cell);
+            let in_scope =
+                self.parameters().scope_of_strategy() == Scope::Observable || !map.is_known(cell);
             if certificate[at] == CellStatus::Unreachable && in_scope {
                 certificate[at] = CellStatus::NotSeen;
             }

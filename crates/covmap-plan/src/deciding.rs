@@ -115,14 +115,10 @@ impl Planner {
     /// gain. So whatever is close to the best by less than what the fast gains are off is evaluated.
     fn fill_deciding_gains(&mut self, contest: &mut Contest<'_>) {
         let all = self.view_points(&contest.records);
-        if contest.scoring.uncertainty(&contest.records, GAIN_TOLERANCE).is_none() {
-            self.gains.refresh_gains(&all);
-            self.take_gains(contest);
-            return;
-        }
+        self.take_gains(contest);
         let uses_gain = contest.scoring.uses_gain();
         self.gains.take_exceeded();
-        if uses_gain {
+        if uses_gain && !contest.needs_all_gains() {
             // Eq. (16) divides by the largest gain, as does what is told of IG: this one first.
             let largest = |contest: &Contest<'_>| {
                 let gains = contest.records.iter().map(|r| r.gain.abs());
@@ -137,7 +133,8 @@ impl Planner {
             |record| record.score,
             |contest| contest.uncertainty(),
         );
-        if uses_gain && self.gains.take_exceeded() {
+        // What the gains turn out to be may be less than bounds are good for.
+        if uses_gain && (self.gains.take_exceeded() || contest.needs_all_gains()) {
             self.gains.refresh_gains(&all);
             self.take_gains(contest);
         }

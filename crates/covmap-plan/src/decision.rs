@@ -24,11 +24,13 @@ impl Score {
     /// α · E\[I(l)\] / max E\[I(l')\] − d_c(l, x) / max d_c(l', x)
     /// ```
     ///
-    /// with both maxima over the same candidates. Choice: where no gain is positive the
-    /// first term is 0 for all, and where all costs are 0 the second.
+    /// with both maxima over the same candidates. Choice: where no gain is positive, gains are divided by the
+    /// largest absolute one, so that a large α remains IG; where all gains are 0 the first term is 0 for all,
+    /// and where all costs are 0 the second.
     pub(crate) fn fill(self, candidates: &mut [CandidateRecord]) {
         let largest = |f: fn(&CandidateRecord) -> f64| candidates.iter().map(f).fold(0.0, f64::max);
-        let (max_gain, max_cost) = (largest(|c| c.gain), largest(|c| c.cost));
+        let (positive, max_cost) = (largest(|c| c.gain), largest(|c| c.cost));
+        let max_gain = if positive > 0.0 { positive } else { largest(|c| c.gain.abs()) };
         let share = |value: f64, max: f64| if max > 0.0 { value / max } else { 0.0 };
         let alpha = if let Score::Weighted(alpha) = self { alpha } else { 1.0 };
         for candidate in candidates {
@@ -51,15 +53,16 @@ impl Scoring for Score {
     fn uncertainty(&self, candidates: &[CandidateRecord], tolerance: f64) -> Option<f64> {
         let largest = candidates.iter().map(|c| c.gain.abs()).fold(0.0, f64::max);
         let positive = candidates.iter().map(|c| c.gain).fold(0.0, f64::max);
-        Some(match self {
-            Score::Closest => 0.0,
-            Score::Gain => tolerance * largest,
+        match self {
+            Score::Closest => Some(0.0),
+            Score::Gain => Some(tolerance * largest),
             Score::Weighted(alpha) if positive > 0.0 => {
                 // The numerator and the denominator may both be off.
-                alpha * tolerance * largest / positive * (1.0 + largest / positive)
+                Some(alpha * tolerance * largest / positive * (1.0 + largest / positive))
             }
-            Score::Weighted(_) => 0.0,
-        })
+            // The largest absolute gain is the lowest, of which bounds say nothing.
+            Score::Weighted(_) => None,
+        }
     }
 
     fn uses_gain(&self) -> bool {
@@ -101,6 +104,11 @@ impl<'a> Contest<'a> {
     /// How much a score may be off by what the fast gains are off; 0 where all of them are evaluated.
     pub(crate) fn uncertainty(&self) -> f64 {
         self.scoring.uncertainty(&self.records, GAIN_TOLERANCE).unwrap_or(0.0)
+    }
+
+    /// Whether bounds of gains do not tell who may be the best.
+    pub(crate) fn needs_all_gains(&self) -> bool {
+        self.scoring.uncertainty(&self.records, GAIN_TOLERANCE).is_none()
     }
 
     /// Passes over a candidate.
@@ -186,7 +194,10 @@ mod tests {
 
     #[test]
     fn the_result_is_defined_when_nothing_is_gained_and_nothing_costs() {
+        // .3 · −1 − 2/3, .3 · −.1 − 1/3, 0 − 1.
         assert_eq!(choose(Score::Weighted(0.3), &[(-1.0, 2.0), (-0.1, 1.0), (0.0, 3.0)]), Some(1));
+        // 2 · −1 − 1/2, 2 · −.1 − 1: the gain decides, though none is positive.
+        assert_eq!(choose(Score::Weighted(2.0), &[(-1.0, 1.0), (-0.1, 2.0)]), Some(1));
         assert_eq!(choose(Score::Weighted(0.3), &[(1.0, 0.0), (2.0, 0.0)]), Some(1));
         assert_eq!(choose(Score::Weighted(0.3), &[(0.0, 0.0), (0.0, 0.0)]), Some(0));
         assert_eq!(choose(Score::Gain, &[]), None);
@@ -195,10 +206,12 @@ mod tests {
     proptest! {
         #[test]
         fn alpha_zero_is_closest_location_and_large_alpha_is_maximum_gain(
+            below in 0.0..20.0f64,
             values in prop::collection::vec((-1.0..10.0f64, 0.0..20.0f64), 1..30)
         ) {
+            let values: Vec<(f64, f64)> = values.into_iter().map(|(g, c)| (g - below, c)).collect();
             prop_assert_eq!(choose(Score::Weighted(0.0), &values), choose(Score::Closest, &values));
-            if values.iter().any(|(gain, _)| *gain > 0.0) {
+            if values.iter().any(|(gain, _)| gain.abs() > 1e-6) {
                 prop_assert_eq!(choose(Score::Weighted(1e9), &values), choose(Score::Gain, &values));
             }
         }

@@ -44,7 +44,7 @@ pub use certificate::Promise;
 pub use exploration::CellStatus;
 pub use memory::planner_bytes;
 pub use parameters::{
-    BodyEvidence, Effort, PlannerError, PlannerParameters, Reason, Scope, StallRule,
+    BodyEvidence, Effort, InPlace, PlannerError, PlannerParameters, Reason, Scope, StallRule,
 };
 pub use planner::Planner;
 pub use reach::Reach;

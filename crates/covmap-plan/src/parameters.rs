@@ -94,6 +94,17 @@ pub enum Scope {
     Reachable,
 }
 
+/// Whether the robot may measure again where it stands, which costs no way.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+pub enum InPlace {
+    /// Its own cell is a candidate like any other.
+    #[default]
+    Always,
+    /// Not while it measures on the way: then scans are made every so many metres of way, and a target is
+    /// another cell. Its own cell is a candidate only if there is no other.
+    AtViewPoints,
+}
+
 /// What is made of the fact that the robot's body fits where it stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BodyEvidence {
@@ -127,6 +138,10 @@ pub struct PlannerParameters {
     /// take readings from one place for independent. 0 asks for no distance. Counting strategies, which
     /// count just that, do not ask.
     pub scan_spacing: f64,
+    /// Whether the robot may measure again where it stands. Files of versions that did not have this
+    /// parameter are read as `Always`, which is what those versions did.
+    #[serde(default)]
+    pub in_place: InPlace,
     /// A practical cap on the scans counted for one cell; reported whenever it fires.
     pub max_counted_scans: u32,
     /// The cost of a turn of one radian to IG_CL, in metres of way \[m/rad\]: d(l, x) of
@@ -134,6 +149,11 @@ pub struct PlannerParameters {
     pub turn_cost: f64,
     /// Which cells must be explored.
     pub scope: Scope,
+    /// Which cells a counting strategy must cover by its scans. The paper stops counting when "all reachable
+    /// locations were covered by a measurement": `Reachable`. Files of versions that did not have this
+    /// parameter are read as `Observable`, which is what those versions did.
+    #[serde(default = "observable")]
+    pub count_scope: Scope,
     /// The largest most likely coverage of a cell that the robot may drive over.
     pub traversable_coverage: f64,
     /// c_u: how much an unknown cell reflects when ranges are predicted.
@@ -179,6 +199,10 @@ impl PlannerError {
     }
 }
 
+fn observable() -> Scope {
+    Scope::Observable
+}
+
 impl PlannerParameters {
     /// The defaults: IG_CL(.1), walls are targets, [`Effort::Standard`], the paper's .001 and five.
     pub fn standard() -> Self {
@@ -192,9 +216,11 @@ impl PlannerParameters {
             stall_limit: 5,
             stall_rule: StallRule::Banded { first: 1.0, closest: 0.5 },
             scan_spacing: 0.0,
+            in_place: InPlace::Always,
             max_counted_scans: 520,
             turn_cost: 0.0,
             scope: Scope::Observable,
+            count_scope: Scope::Reachable,
             traversable_coverage: 0.2,
             unknown_reflection: 0.0,
             uniform_share: 0.0,
@@ -239,6 +265,14 @@ impl PlannerParameters {
     pub fn range_prediction(&self) -> RangePrediction {
         let Self { gain, unknown_reflection, uniform_share, .. } = *self;
         RangePrediction { gain, unknown_reflection, uniform_share, novelty: 1.0 }
+    }
+
+    /// Which cells the strategy must explore, or cover by its scans.
+    pub(crate) fn scope_of_strategy(&self) -> Scope {
+        match self.strategy.counting() {
+            None => self.scope,
+            Some(_) => self.count_scope,
+        }
     }
 
     /// Strategies that weigh gains keep them; the others report some few.

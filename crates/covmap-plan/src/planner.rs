@@ -11,8 +11,8 @@ use crate::traversable::Traversable;
 use crate::turning::straight;
 use crate::window::Window;
 use crate::{
-    BodyEvidence, CandidateRecord, Decision, PlannerError, PlannerParameters, Scope, Strategy,
-    TravelCosts, travel_costs,
+    BodyEvidence, CandidateRecord, Decision, InPlace, PlannerError, PlannerParameters, Scope,
+    Strategy, TravelCosts, travel_costs,
 };
 use crate::{Scoring, Situation};
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
@@ -54,6 +54,8 @@ pub struct Planner {
     /// What a scan must be expected to change, if it is asked.
     pub(crate) least_change: Option<LeastChange>,
     pub(crate) window: Option<Window>,
+    /// While driving, a target is another cell than the robot's, if there is one.
+    leaves_its_cell: bool,
     /// The direction of the last piece of the way that the robot drove.
     pub(crate) ahead: Option<Vector2<f64>>,
     /// The chosen view-point, and what was in sight of it when it was chosen.
@@ -108,6 +110,7 @@ impl Planner {
             radius,
             gains,
             measured: Measured::new(grid, scan_spacing),
+            leaves_its_cell: false,
             novelty: vec![1.0; grid.len()],
             least_change,
             window,
@@ -194,6 +197,11 @@ impl Planner {
         self.take_over(map, changes);
     }
 
+    /// Takes note that the robot measures while it drives.
+    pub fn measure_while_driving(&mut self) {
+        self.leaves_its_cell = self.parameters.in_place == InPlace::AtViewPoints;
+    }
+
     /// Takes note that the robot stands in a cell: it can stand there again.
     pub fn stand_on(&mut self, cell: Cell) {
         if self.parameters.body_evidence != BodyEvidence::Off {
@@ -227,7 +235,7 @@ impl Planner {
                 let free = map.mode(change.cell) <= self.parameters.traversable_coverage + 1e-9;
                 let mut opened_or_closed = Vec::new();
                 self.traversable.update(index, known.then_some(free), |i| opened_or_closed.push(i));
-                if self.parameters.scope == Scope::Reachable {
+                if self.parameters.scope_of_strategy() == Scope::Reachable {
                     opened_or_closed.into_iter().for_each(|i| self.update_limit(map, i));
                 }
             }
@@ -239,7 +247,7 @@ impl Planner {
     pub(crate) fn update_limit(&mut self, map: &CoverageMap, index: usize) {
         let cell = self.grid.cell(index);
         let known = map.is_known(cell);
-        let in_scope = match self.parameters.scope {
+        let in_scope = match self.parameters.scope_of_strategy() {
             Scope::Observable => true,
             Scope::Reachable => !known || self.traversable.at(index),
         };
@@ -276,6 +284,10 @@ impl Planner {
         let trapped = costs.reached().all(|i| self.measured.is_near(i, from));
         let mut indices = self.gains.with_reason(&reached);
         indices.retain(|i| trapped || !self.measured.is_spent(*i));
+        if self.leaves_its_cell && indices.len() > 1 {
+            let own = self.grid.index(from);
+            indices.retain(|i| Some(*i) != own);
+        }
         Candidates { indices, costs, passage: Vec::new() }
     }
 

@@ -5,7 +5,9 @@ use covmap_model::{
     FootprintRule, Linear, ModelParameters, NoEchoParameters, ProductParameters, SensorModel,
     Update,
 };
-use covmap_plan::{CellStatus, Decision, Planner, PlannerParameters, Reason, StallRule, Strategy};
+use covmap_plan::{
+    CellStatus, Decision, Planner, PlannerParameters, Reason, Scope, StallRule, Strategy,
+};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
 
@@ -42,6 +44,7 @@ pub(crate) fn two_bins(range: f64) -> ModelParameters {
 pub(crate) fn plain(strategy: Strategy) -> PlannerParameters {
     PlannerParameters {
         strategy,
+        count_scope: Scope::Observable,
         reason: Reason::InSight,
         entropy_threshold: 0.1,
         scan_spacing: 0.0,

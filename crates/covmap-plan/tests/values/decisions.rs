@@ -6,7 +6,7 @@
 use super::corridor::{Corridor, plain, two_bins};
 use super::{all_close, close};
 use covmap::Cell;
-use covmap_plan::{CellStatus, PlannerParameters, Scope, Strategy};
+use covmap_plan::{CellStatus, InPlace, PlannerParameters, Scope, Strategy};
 use std::f64::consts::PI;
 
 fn corridor_with(parameters: &PlannerParameters) -> Corridor {
@@ -139,6 +139,35 @@ fn a_robot_that_cannot_get_away_from_a_scan_measures_again() {
     [4, 6].into_iter().for_each(|x| corridor.know(x, &[0.2, 0.8]));
     corridor.look_in_vain(5);
     assert_eq!(corridor.candidates(5), [5]);
+}
+
+#[test]
+fn while_driving_a_target_is_another_cell_if_there_is_one() {
+    for (in_place, candidates) in [(InPlace::Always, vec![3, 7]), (InPlace::AtViewPoints, vec![7])]
+    {
+        let parameters = PlannerParameters { in_place, ..plain(Strategy::Cl) };
+        let mut corridor = corridor_with(&parameters);
+        assert_eq!(corridor.candidates(3), [3, 7], "{in_place:?}: at view-points");
+        corridor.planner.measure_while_driving();
+        assert_eq!(corridor.candidates(3), candidates, "{in_place:?}");
+        // Only one is left.
+        corridor.know(8, &[1.0, 0.0]);
+        assert_eq!(corridor.candidates(3), [3], "{in_place:?}");
+    }
+}
+
+#[test]
+fn counting_has_a_scope_of_its_own() {
+    let wall = [(Scope::Observable, CellStatus::Open), (Scope::Reachable, CellStatus::Unreachable)];
+    for (count_scope, status) in wall {
+        let count = Strategy::Count { times: 1.0, half_distance: None };
+        let parameters = PlannerParameters { count_scope, ..plain(count) };
+        let mut corridor = corridor_with(&parameters);
+        corridor.know(8, &[0.1, 0.9]);
+        assert_eq!(corridor.status(5, 8), status, "{count_scope:?}");
+        // The floor is counted in any case.
+        assert_eq!(corridor.status(5, 6), CellStatus::Open, "{count_scope:?}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::Evidence;
 use crate::CoverageMap;
-use crate::histogram::{MAX_BINS, PROBABILITY_FLOOR};
+use crate::histogram::{MAX_BINS, PROBABILITY_FLOOR, TIE};
 use crate::lanes::{LANES, Lanes, TOGETHER, flat, ln};
 
 /// Evidence for up to [`LANES`] different cells, side by side, to be multiplied into a map.
@@ -86,7 +86,7 @@ impl EvidenceBlock {
         beyond.fill([1.0; LANES]);
     }
 
-    /// The bins of the modes, the first of several.
+    /// The bins of the modes, the first of several: see [`crate::mode_bin`].
     #[inline(always)]
     fn modes(&self) -> Lanes {
         let (mut best, mut mode) = (self.rows()[0], [0.0f32; LANES]);
@@ -94,8 +94,9 @@ impl EvidenceBlock {
         for w in &self.rows()[1..] {
             bin += 1.0;
             for lane in 0..LANES {
-                mode[lane] = if w[lane] > best[lane] { bin } else { mode[lane] };
-                best[lane] = best[lane].max(w[lane]);
+                let larger = w[lane] > best[lane] * (1.0 + TIE);
+                mode[lane] = if larger { bin } else { mode[lane] };
+                best[lane] = if larger { w[lane] } else { best[lane] };
             }
         }
         mode
