@@ -2,10 +2,10 @@
 
 use crate::error::Result;
 use crate::runs::Units;
-use covmap::{Class, CoverageMap};
+use covmap::{Class, CoverageMap, Raster};
 use covmap_lab::{Config, SimulatedRobot};
 use covmap_model::{OccupancyGrid, OccupancyParameters, integrate};
-use covmap_sonar::Scan;
+use covmap_sonar::{Range, Scan, SonarRing};
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use nalgebra::{Isometry2, Point2};
 use rayon::prelude::*;
@@ -17,11 +17,12 @@ const AWAY: [f64; 2] = [0.8, 1.2];
 const SCANS: usize = 40;
 /// … over this length \[m\].
 const LENGTH: f64 = 2.0;
-/// From this distance \[m\] on cells are not looked at.
-const RANGE: f64 = 2.0;
+/// Cells in which fewer readings ended are not looked at: the paper speaks of cells in which "the sensors
+/// repeatedly detect the obstacle".
+const LEAST_ENDS: usize = 5;
 
 /// Each unit is a (distance, seed) with mean occupancy, error of the occupancy, and error of the
-/// expected coverage over the partly covered cells in sight; a group is what was measured of one
+/// expected coverage over the partly covered cells in which readings ended repeatedly; a group is what was measured of one
 /// wall.
 #[derive(Debug, Clone)]
 pub struct Oblique(pub(crate) Units);
@@ -57,12 +58,12 @@ fn wall(turn: f64) -> Scenario {
 
 fn unit(config: &Config, turn: f64, away: f64, seed: u64) -> Result<Vec<f64>> {
     let world = World::from_scenario(&wall(turn), config.sonar.surface)?;
-    let (_, model) = config.build()?;
+    let (ring, model) = config.build()?;
     let grid = world.grid(config.resolution)?;
     let mut map = CoverageMap::new(grid, config.model.bins)?;
     let mut occupancy = OccupancyGrid::new(grid, OccupancyParameters::default());
     let mut robot = SimulatedRobot::new(&world, config, seed)?;
-    let mut places = Vec::new();
+    let mut ends = Raster::filled(grid, 0);
     for index in 0..SCANS {
         let along = LENGTH * (index as f64 / (SCANS - 1) as f64 - 0.5);
         // Below the wall, in its own frame.
@@ -72,17 +73,15 @@ fn unit(config: &Config, turn: f64, away: f64, seed: u64) -> Result<Vec<f64>> {
         let scan = Scan { pose, time: 0.0, ranges: robot.fire(&pose) };
         integrate(&model, &mut map, &scan);
         occupancy.integrate(&model, &scan);
-        places.push(at);
+        count_ends(&mut ends, &ring, &scan);
     }
     let truth = world.coverage(&grid);
-    let seen = world.cells_seen_from(&grid, &truth, places.into_iter(), RANGE);
     let occupied = occupancy.probabilities();
     let (mut sums, mut count) = (vec![0.0; 3], 0.0);
     for (cell, coverage) in truth.iter() {
-        let is = |raster: &covmap::Raster<bool>| raster.get(cell).copied().unwrap_or(false);
-        let in_sight = is(&seen.in_sight) || is(&seen.first_solid);
+        let detected = ends.get(cell).is_some_and(|ends| *ends >= LEAST_ENDS);
         let Some(p) = occupied.get(cell).copied().flatten() else { continue };
-        if in_sight && Class::of(*coverage) == Class::Partial {
+        if detected && Class::of(*coverage) == Class::Partial {
             sums[Oblique::OCCUPANCY] += p;
             sums[Oblique::OCCUPANCY_ERROR] += (p - coverage).abs();
             sums[Oblique::COVERAGE_ERROR] += (map.mean(cell) - coverage).abs();
@@ -90,6 +89,18 @@ fn unit(config: &Config, turn: f64, away: f64, seed: u64) -> Result<Vec<f64>> {
         }
     }
     Ok(sums.into_iter().map(|sum| sum / f64::max(count, 1.0)).collect())
+}
+
+/// Counts in which cell each reading ends, on the axis of its beam.
+fn count_ends(ends: &mut Raster<usize>, ring: &SonarRing, scan: &Scan) {
+    for (beam, range) in ring.beams().iter().zip(&scan.ranges) {
+        if let Range::Echo(range) = range {
+            let end = scan.pose * beam.pose * Point2::new(*range, 0.0);
+            if let Some(count) = ends.grid().cell_at(end).and_then(|cell| ends.get_mut(cell)) {
+                *count += 1;
+            }
+        }
+    }
 }
 
 #[cfg(test)]

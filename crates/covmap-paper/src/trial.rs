@@ -30,6 +30,11 @@ pub struct Trial {
     pub p_holds: f64,
     /// How likely data like these are if it is so: small speaks against the claim.
     pub p_fails: f64,
+    /// The number of independent groups it rests on; none for a fact.
+    pub groups: Option<usize>,
+    /// The number of groups at which the test would decide with a power of 80 %, at the level of the first
+    /// step of Holm's correction over 20 claims, if the number is as it was measured.
+    pub groups_needed: Option<f64>,
     /// Whether there is no chance in it.
     pub exact: bool,
     /// Why the number decides nothing, or what else there is to say of it.
@@ -76,7 +81,11 @@ pub struct Judged {
 }
 
 /// At this level a claim is decided.
-const LEVEL: f64 = 0.05;
+pub(crate) const LEVEL: f64 = 0.05;
+/// The probability with which a test is to find what there is.
+const POWER: f64 = 0.8;
+/// The claims of a column, of which Holm's first step takes account.
+const CLAIMS: f64 = 20.0;
 /// A number that rests on fewer independent groups than this decides nothing.
 const FEWEST_GROUPS: usize = 3;
 /// A standard error below this part of the number is rounding.
@@ -99,6 +108,8 @@ impl Trial {
             bound: bound.to_string(),
             p_holds,
             p_fails,
+            groups: estimate.map(|e| e.groups),
+            groups_needed: estimate.and_then(|e| needed(&e, bound)),
             exact: false,
             reason,
         }
@@ -117,6 +128,11 @@ impl Trial {
         Self { reason: (!reasons.is_empty()).then(|| reasons.join("; ")), ..self }
     }
 
+    /// The same, of one of several worlds.
+    pub fn of(self, world: &str) -> Self {
+        Self { what: format!("{world}: {}", self.what), ..self }
+    }
+
     /// Something that is so or is not.
     pub fn fact(what: impl Into<String>, holds: bool) -> Self {
         Self {
@@ -126,6 +142,8 @@ impl Trial {
             bound: (if holds { "it is so" } else { "it is not so" }).to_owned(),
             p_holds: f64::from(u8::from(!holds)),
             p_fails: f64::from(u8::from(holds)),
+            groups: None,
+            groups_needed: None,
             exact: true,
             reason: None,
         }
@@ -209,6 +227,15 @@ pub fn judge(findings: Vec<Finding>) -> Vec<Judged> {
         Judged { finding, verdict, p }
     };
     findings.into_iter().zip(adjusted).map(one).collect()
+}
+
+/// The number of groups that would decide whether a number keeps within a bound: the nearest end counts.
+fn needed(estimate: &Estimate, bound: Bound) -> Option<f64> {
+    let of = |limit: f64| estimate.groups_needed(limit, 0.5 * LEVEL / CLAIMS, POWER);
+    match bound {
+        Bound::Below(limit) | Bound::Above(limit) => of(limit),
+        Bound::Between(low, high) => Some(of(low)?.max(of(high)?)),
+    }
 }
 
 /// Why an estimate must not decide: it rests on too few groups, or these are all alike, so that

@@ -2,7 +2,7 @@
 
 use crate::Spread;
 use serde::{Deserialize, Serialize};
-use statrs::distribution::{ContinuousCDF, StudentsT};
+use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 /// Fewer groups than this that are all alike say nothing of their spread.
 const ALIKE: usize = 3;
@@ -76,6 +76,22 @@ impl Estimate {
         (2.0 * self.p_below(low).min(self.p_above(high))).min(1.0)
     }
 
+    /// The number of groups at which a test at a level to one side finds with a probability of `power` that the
+    /// true value is not at a bound, if it is as it was estimated, and groups scatter as they do; `None` if
+    /// nothing is known of their scatter, or the value lies at the bound.
+    ///
+    /// # Formula
+    /// ```text
+    /// n = groups · ((z(1 − level) + z(power)) · standard_error / (value − bound))²
+    /// ```
+    pub fn groups_needed(&self, bound: f64, level: f64, power: f64) -> Option<f64> {
+        self.student()?;
+        let normal = Normal::standard();
+        let z = normal.inverse_cdf(1.0 - level) + normal.inverse_cdf(power);
+        let ratio = z * self.standard_error / (self.value - bound);
+        (ratio.is_finite() && self.groups >= 2).then(|| self.groups as f64 * ratio * ratio)
+    }
+
     fn student(&self) -> Option<StudentsT> {
         let groups = u32::try_from(self.groups).ok().filter(|groups| *groups >= 2)?;
         if !(self.value.is_finite() && self.standard_error.is_finite()) {
@@ -119,6 +135,16 @@ mod tests {
         assert!(estimate.interval(0.0).is_some());
         assert!(estimate.p_below(f64::NAN) >= 1.0 && estimate.p_above(f64::NAN) >= 1.0);
         assert!(estimate.p_below(f64::INFINITY) < 1e-9);
+    }
+
+    #[test]
+    fn the_groups_that_are_needed_grow_with_the_square_of_the_error() {
+        // z(.975) + z(.8) = 1.959964 + .841621 = 2.801585; (2.801585 · .5 / 1)² · 4 = 7.84888.
+        let estimate = Estimate { value: 3.0, standard_error: 0.5, groups: 4 };
+        let needed = estimate.groups_needed(2.0, 0.025, 0.8).unwrap();
+        assert!((needed - 7.848_88).abs() < 1e-4, "{needed}");
+        assert!(estimate.groups_needed(3.0, 0.025, 0.8).is_none());
+        assert!(Estimate { groups: 1, ..estimate }.groups_needed(2.0, 0.025, 0.8).is_none());
     }
 
     #[test]
