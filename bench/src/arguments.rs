@@ -1,4 +1,4 @@
-//! What can be typed.
+//! The arguments of `bench`.
 
 use crate::growth::Point;
 use clap::{Parser, ValueEnum};
@@ -6,11 +6,11 @@ use covmap_cli::Force;
 use std::path::PathBuf;
 
 const BENCH_EXAMPLES: &str = "\
-Each row is a ratio, measured on one core in one run, by the time that the core computes: how many
-times as long the other way takes to the same answers. Behind a ratio below its target stands
-`falls short`; that is no error. The last lines say how well the answers agree, and how long a
-decision takes on all threads, by the clock. The worlds are offices like scenarios/office.ron in
-cells of 0.1 m, partly explored, with a fixed seed.
+Each row is a ratio of times: that of another way to the same answers, over ours. Both are measured
+in one run, by the computing time of one core. A ratio below its target is marked `falls short`,
+which is not an error. The last lines give the agreement of the answers, and the wall time of a
+decision on all threads. The worlds are offices like scenarios/office.ron in cells of 0.1 m, partly
+explored, with a fixed seed.
 
 Examples:
   cargo xtask bench           the whole table, some minutes
@@ -25,21 +25,21 @@ pub(crate) struct Bench {
     /// Smaller maps and samples: a look, not a measurement
     #[arg(long)]
     pub(crate) quick: bool,
-    /// These rows alone
+    /// Only these rows
     #[arg(long, value_enum)]
     pub(crate) only: Option<Rows>,
-    /// How time and memory of a decision grow instead: writes growth.csv, .svg and .png into
-    /// this folder
+    /// Measure instead the growth of a decision's time and memory: writes growth.csv, .svg and .png
+    /// into this folder
     #[arg(long, value_name = "DIR", conflicts_with = "only")]
     pub(crate) growth: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) force: Force,
-    /// One point of --growth, by a process of its own
+    /// One point of --growth, in a process of its own
     #[arg(long, hide = true, value_name = "SIDE:BINS:RANGE")]
     pub(crate) point: Option<Point>,
 }
 
-/// What `bench` measures.
+/// The rows that `bench` measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Rows {
     /// Choosing view-points by information gain

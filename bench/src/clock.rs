@@ -1,4 +1,4 @@
-//! Taking times.
+//! Time measurements.
 
 use cpu_time::ThreadTime;
 use std::hint::black_box;
@@ -7,14 +7,14 @@ use std::time::Instant;
 /// A clock.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Clock {
-    /// What one thread computes, whatever else the machine does: for work on one core.
+    /// The time that one thread computes, whatever else the machine does: for work on one core.
     Core,
-    /// What passes: for work on many threads.
+    /// The time that passes: for work on many threads.
     Wall,
 }
 
 impl Clock {
-    /// How long something takes \[s\], and what comes of it.
+    /// Returns the duration of some work \[s\], and its result.
     pub(crate) fn time<T>(self, work: impl FnOnce() -> T) -> (f64, T) {
         match self {
             Clock::Core => {
@@ -31,12 +31,12 @@ impl Clock {
     }
 }
 
-/// How long something takes on this core \[s\], and what comes of it.
+/// Returns the duration of some work on this core \[s\], and its result.
 pub(crate) fn timed<T>(work: impl FnOnce() -> T) -> (f64, T) {
     Clock::Core.time(work)
 }
 
-/// The value below which a share of all values lies, by the nearest rank; 0 of none.
+/// Returns the value below which a share of all values lies, by the nearest rank; 0 without values.
 pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -49,8 +49,8 @@ pub(crate) fn median(values: &[f64]) -> f64 {
     quantile(values, 0.5)
 }
 
-/// The median times of two pieces of work \[s\], done in turns, so that what disturbs the
-/// machine disturbs both.
+/// Returns the median times of two pieces of work \[s\]. They take turns: a disturbance of the
+/// machine affects both.
 pub(crate) fn race<A, B>(
     rounds: usize,
     mut ours: impl FnMut() -> A,

@@ -12,31 +12,32 @@ use covmap_world::World;
 use nalgebra::Point2;
 use std::ops::ControlFlow;
 
-/// Places where the large map was measured are so far apart \[m\] …
+/// The spacing of the places of measurement in the large map \[m\] …
 const SPACING: f64 = 1.5;
-/// … and lie in the lower part of it.
+/// … which lie in this lower part of the map.
 const EXPLORED: f64 = 0.7;
 
-/// The configuration with each of the updates, each by its name; the parameters of the other one
-/// are those that were fitted.
+/// Returns the configuration with each of the updates, each with its name. The parameters of the
+/// other update are the fitted ones.
 pub(crate) fn updates(config: &Config) -> [(&'static str, Config); 2] {
     let with = |model| Config { model, ..config.clone() };
     let model = || config.model.clone();
     let by_cause = with(model().with_cause(|_| ()));
     let mut by_product = with(model().with_product(|_| ()));
-    // What is expected to change was found for the update by cause.
+    // The expected change was fitted for the update by cause.
     by_product.planner.reason = Reason::InSight;
     [("by cause", by_cause), ("by Eq. (9)", by_product)]
 }
 
-/// The configuration with the strategy IG.
+/// Returns the configuration with the strategy IG.
 fn with_gain(config: &Config) -> Config {
     let mut config = config.clone();
     config.planner.strategy = Strategy::Ig;
     config
 }
 
-/// IG with every cell for ever a reason to measure: every reachable cell is a candidate.
+/// Returns the configuration for IG with every cell always a reason to measure: every reachable
+/// cell is a candidate.
 pub(crate) fn for_ever(config: &Config) -> Config {
     let mut config = with_gain(config);
     config.planner.reason = Reason::InSight;
@@ -46,7 +47,7 @@ pub(crate) fn for_ever(config: &Config) -> Config {
     config
 }
 
-/// An exploration up to some number of scans.
+/// Explores a world up to a number of scans.
 pub(crate) fn explored(world: &World, config: &Config, scans: usize) -> Result<(Mission, Run)> {
     let limits = Limits { while_driving: None, max_scans: Some(scans) };
     let mission = covmap_lab::mission(world, config, None, limits)?;
@@ -55,8 +56,7 @@ pub(crate) fn explored(world: &World, config: &Config, scans: usize) -> Result<(
     Ok((mission, run))
 }
 
-/// Every E\[I\] of the small map, and the decisions from them. The configuration's update is called
-/// by its name.
+/// Measures every E\[I\] of the small map, and the decisions from them, for a named update.
 pub(crate) fn small(
     bench: &Measuring<'_>,
     (update, config): &(&str, Config),
@@ -114,7 +114,7 @@ pub(crate) fn small(
     Ok(())
 }
 
-/// The cold decision of the large map, and the next ones.
+/// Measures the cold decision of the large map, and the next decisions.
 pub(crate) fn large(
     bench: &Measuring<'_>,
     (update, config): &(&str, Config),
@@ -147,7 +147,7 @@ pub(crate) fn large(
     Ok(())
 }
 
-/// Where a robot fits, on a lattice over the explored part.
+/// Returns the places where a robot fits, on a lattice over the explored part.
 pub(crate) fn places(world: &World, radius: f64) -> Vec<Point2<f64>> {
     let (low, size) = (world.lower_left(), world.size());
     let along = |first: f64, length: f64| {
@@ -159,11 +159,11 @@ pub(crate) fn places(world: &World, radius: f64) -> Vec<Point2<f64>> {
     points.filter(|p| world.clearance(*p) > radius + 0.1).collect()
 }
 
-/// Some decisions, one after another.
+/// A series of decisions.
 pub(crate) struct Decisions {
-    /// How long each took: noting what changed, and choosing \[s\].
+    /// The duration of each decision, from noting the changes to choosing \[s\].
     pub(crate) seconds: Vec<f64>,
-    /// How many view-points were decided by the literal equations, on average.
+    /// The mean number of view-points that the literal equations decided.
     literal: f64,
 }
 
@@ -184,11 +184,11 @@ pub(crate) fn decide(
     Ok(Decisions { literal: count(literal) / count(seconds.len().max(1)), seconds })
 }
 
-/// What a sample of view-points shows.
+/// The comparison over a sample of view-points.
 struct Comparison {
     sample: usize,
     of: usize,
-    /// Of the literal evaluation of one view-point \[s\].
+    /// The duration of the literal evaluation of one view-point \[s\].
     seconds: f64,
     /// The largest difference, in units of the largest |E\[I\]|.
     difference: f64,
@@ -210,7 +210,7 @@ fn compare(
     Ok(Comparison { sample, of, seconds: seconds / count(sample), difference })
 }
 
-/// How long decisions take in the shipped office, on as many threads as there are.
+/// Measures the duration of decisions in the shipped office, on all threads.
 pub(crate) fn office(
     bench: &Measuring<'_>,
     (update, config): &(&str, Config),

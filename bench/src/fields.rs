@@ -1,4 +1,4 @@
-//! Distance fields, against Dijkstra's algorithm of two libraries.
+//! Distance fields, against the Dijkstra's algorithm of two libraries.
 
 use crate::clock::race;
 use crate::table::{Row, Table};
@@ -12,10 +12,10 @@ use std::cmp::Ordering;
 use std::f64::consts::SQRT_2;
 use std::ops::Add;
 
-/// The steps to the right or up, of which the others are the reverse.
+/// The steps to the right or up; the other steps are the reverse.
 const FORWARD: [(i32, i32); 4] = [(1, 0), (-1, 1), (0, 1), (1, 1)];
 
-/// What can be walked on, with the steps of `travel_costs`.
+/// The free cells, with the steps of `travel_costs`.
 struct Floor {
     grid: Grid,
     free: Vec<bool>,
@@ -27,7 +27,7 @@ impl Floor {
         u32::try_from(index).ok()
     }
 
-    /// Where a step leads, and how long it is.
+    /// Returns the target and the length of a step.
     fn step(&self, from: Cell, (dx, dy): (i32, i32)) -> Option<(u32, f64)> {
         let to = self.at(from.offset(dx, dy))?;
         Some((to, if dx == 0 || dy == 0 { 1.0 } else { SQRT_2 }))
@@ -54,7 +54,7 @@ impl Floor {
     }
 }
 
-/// A length that has an order.
+/// A length with a total order.
 #[derive(Debug, Clone, Copy)]
 struct Length(f64);
 
@@ -115,7 +115,7 @@ pub(crate) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
 
     let same = petgraph().into_iter().map(|(n, d)| (n.index(), d)).collect::<Vec<_>>();
     let difference = largest_difference(&field, same);
-    // It leaves out the start.
+    // The library leaves out the start.
     let others = pathfinding().into_iter().map(|(n, (_, d))| (n as usize, d.0));
     let same = others.chain([(from as usize, 0.0)]).collect();
     let difference = difference.max(largest_difference(&field, same));
@@ -133,8 +133,8 @@ pub(crate) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
     Ok(())
 }
 
-/// The largest difference of lengths in cells from our field \[m\]; infinite if not the same
-/// cells are reached.
+/// Returns the largest difference of lengths in cells from our field \[m\]; infinite if the reached
+/// cells differ.
 fn largest_difference(field: &TravelCosts, lengths: Vec<(usize, f64)>) -> f64 {
     if lengths.len() != field.reached().count() {
         return f64::INFINITY;

@@ -1,4 +1,4 @@
-//! Firing a ring, against as many ray casts.
+//! Firing a ring, against the same number of ray casts.
 
 use crate::Measuring;
 use crate::clock::race;
@@ -14,7 +14,7 @@ const ROWS: u32 = 25;
 /// The number of places in a round at which the ring is fired.
 const PLACES: u32 = 40;
 
-/// 1250 turned boxes of four sides each on a lattice of 1 m.
+/// Returns 1250 turned boxes of four sides each on a lattice of 1 m.
 fn boxes() -> Result<World> {
     let shape = |k: u32| Shape::Rectangle {
         center: (f64::from(k % COLUMNS) + 0.5, f64::from(k / COLUMNS) + 0.5),
@@ -31,7 +31,7 @@ fn boxes() -> Result<World> {
     Ok(World::from_scenario(&scenario, Surface::Rough)?)
 }
 
-/// Where nothing stands.
+/// Returns places without a box.
 fn places() -> impl Iterator<Item = Isometry2<f64>> {
     (0..PLACES).map(|k| {
         let (x, y) = (5 + k, 3 + (7 * k) % (ROWS - 6));
@@ -39,7 +39,7 @@ fn places() -> impl Iterator<Item = Isometry2<f64>> {
     })
 }
 
-/// The origins, directions and lengths of the rays across all cones.
+/// Returns the origins, directions and lengths of the rays across all cones.
 fn rays(
     beams: &[Beam],
     pose: Isometry2<f64>,

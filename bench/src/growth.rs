@@ -1,6 +1,6 @@
-//! How time and memory of a decision grow with the map, the bins and the range.
+//! The growth of a decision's time and memory with the map, the bins and the range.
 //!
-//! Each point is measured by a process of its own, so that memory is counted from nothing.
+//! A process of its own measures each point, to count memory from zero.
 
 use crate::Measuring;
 use crate::clock::{Clock, median};
@@ -21,12 +21,12 @@ use std::process::{Command, Stdio};
 use std::str::FromStr;
 use std::time::Instant;
 
-/// Points that would take longer than this, as far as one can tell, are left out \[s\].
+/// Points that would probably take longer than this are left out \[s\].
 const PATIENCE: f64 = 200.0;
-/// The decisions after the first one.
+/// The number of decisions after the first one.
 const NEXT: usize = 5;
 
-/// What one point is measured with.
+/// The settings of one point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Point {
     /// Cells along a side of the map.
@@ -37,8 +37,8 @@ pub(crate) struct Point {
 }
 
 impl Point {
-    /// What it takes about, in whatever unit: cells of the map, bins, and for each view-point
-    /// cells in range and outcomes.
+    /// Returns an estimate of the work in some unit: cells of the map, bins, and for each
+    /// view-point the cells in range and the outcomes.
     fn work(self) -> f64 {
         let bins = self.bins as f64;
         f64::from(self.side).powi(2) * bins * self.range.powi(3)
@@ -56,7 +56,7 @@ impl FromStr for Point {
     fn from_str(text: &str) -> Result<Self, String> {
         let parts: Vec<&str> = text.split(':').collect();
         let &[side, bins, range] = parts.as_slice() else {
-            return Err("SIDE:BINS:RANGE is wanted".into());
+            return Err("expected SIDE:BINS:RANGE".into());
         };
         let point = || Some((side.parse().ok()?, bins.parse().ok()?, range.parse().ok()?));
         let (side, bins, range) = point().ok_or("SIDE:BINS:RANGE are numbers")?;
@@ -64,7 +64,7 @@ impl FromStr for Point {
     }
 }
 
-/// What came out at one point.
+/// The measurements of one point.
 #[derive(Debug, Clone, Copy)]
 struct Measured {
     point: Point,
@@ -72,7 +72,7 @@ struct Measured {
     /// The first decision, with nothing cached, and the median of the next ones \[s\].
     cold: f64,
     next: f64,
-    /// The map alone, and map and planner together \[bytes\]; NaN where no one tells.
+    /// The map alone, and map and planner together \[bytes\]; NaN if the system does not tell.
     map: f64,
     all: f64,
 }
@@ -113,8 +113,8 @@ pub(crate) fn run(
     Ok(output.figure("growth", &figure)?)
 }
 
-/// Measures points of growing size, each in a process of its own; ends before one that would
-/// take too long.
+/// Measures points of growing size, each in a process of its own. The series ends before a point
+/// that would take too long.
 fn measure(bench: &Measuring<'_>, points: impl Iterator<Item = Point>) -> Result<Vec<Measured>> {
     let mut done: Vec<Measured> = Vec::new();
     let mut took = 0.0;
@@ -143,7 +143,7 @@ fn parse(point: Point, text: &str) -> Option<Measured> {
     Some(Measured { point, candidates: candidates as usize, cold, next, map, all })
 }
 
-/// Measures one point and prints what came out: what a process of [`measure`] does.
+/// Measures one point and prints the result: the task of a process of [`measure`].
 pub(crate) fn point(config: &Config, point: Point) -> Result<()> {
     let config = adapted(&for_ever(config), point);
     let world = tiles::offices(point.side, config.sonar.surface)?;
@@ -165,7 +165,8 @@ pub(crate) fn point(config: &Config, point: Point) -> Result<()> {
     Ok(())
 }
 
-/// A configuration with other bins and another range; σ as wide as the model then asks for.
+/// Returns a configuration with other bins and another range; σ is as wide as the model then
+/// requires.
 fn adapted(config: &Config, point: Point) -> Config {
     let mut config = config.clone();
     let model = &mut config.model;
@@ -189,7 +190,7 @@ fn adapted(config: &Config, point: Point) -> Config {
     config
 }
 
-/// The memory that this process holds \[bytes\]; NaN where the system does not tell.
+/// Returns the memory that this process holds \[bytes\]; NaN if the system does not tell.
 fn resident() -> f64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
@@ -220,7 +221,7 @@ fn write_table(output: &FigureFolder, points: &[Measured]) -> Result<()> {
     Ok(output.table("growth", &columns, &points.iter().map(row).collect::<Vec<_>>())?)
 }
 
-/// Time and memory along one axis.
+/// Returns the charts of time and memory along one axis.
 fn row(points: &[Measured], x: &ChartAxis, at: impl Fn(Point) -> f64) -> [Panel; 2] {
     let series = |name: &str, y: &dyn Fn(&Measured) -> f64| Series {
         name: name.into(),

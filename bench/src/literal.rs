@@ -1,6 +1,6 @@
 //! Integrating a scan in plain f64: Eq. (8)–(11), number by number.
 //!
-//! What the library's code is measured against; it shares the footprint with it, and no more.
+//! The reference for the library's code, with which it shares only the footprint.
 
 use covmap::{Grid, PROBABILITY_FLOOR};
 use covmap_model::{Outcome, ProductParameters, SensorModel};
@@ -47,7 +47,7 @@ impl LiteralMap {
     }
 }
 
-/// p(c_l = x | d), Eq. (9), not normalised: the product is.
+/// Computes p(c_l = x | d), Eq. (9), not normalised; the product with the posterior is normalised.
 fn evaluate(model: &SensorModel, cell_distance: f64, outcome: Outcome, evidence: &mut [f64]) {
     let Some(p) = model.parameters().update.product() else {
         return model.evidence(cell_distance, outcome, evidence);
@@ -61,7 +61,7 @@ fn evaluate(model: &SensorModel, cell_distance: f64, outcome: Outcome, evidence:
     }
 }
 
-/// μ, σ and γ of Eq. (9).
+/// Returns μ, σ and γ of Eq. (9).
 fn in_cell(
     model: &SensorModel,
     p: &ProductParameters,

@@ -1,8 +1,7 @@
-//! How fast covmap is, as ratios that are measured in one run.
+//! The speed of covmap, as ratios measured in one run.
 //!
-//! A ratio is measured on one core, against something that gives the same answers, by the time
-//! that the core computes: what else a machine does hardly changes it. Nothing is asserted of
-//! a time.
+//! Both sides of a ratio give the same answers. They are measured on one core, by the time that the
+//! core computes; other work of the machine hardly changes the ratio. No test asserts a time.
 
 mod arguments;
 mod clock;
@@ -25,21 +24,21 @@ use covmap_lab::Config;
 use std::process::ExitCode;
 use table::Table;
 
-/// How much is measured.
+/// The extent of the measurements.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Extent {
-    /// Cells along a side of the small map, and of the large one.
+    /// The number of cells along a side of the small map, and of the large one.
     small: u32,
     large: u32,
-    /// Scans of the exploration that the small map is of.
+    /// The number of scans before the measurements on the small map.
     scans: usize,
-    /// View-points that the literal equations are evaluated at.
+    /// The number of view-points for the literal equations.
     sample: usize,
-    /// Decisions of which the median is taken: small map, large map, office.
+    /// The number of decisions behind a median: small map, large map, office.
     small_decisions: usize,
     large_decisions: usize,
     office_decisions: usize,
-    /// Rounds of the other races.
+    /// The number of rounds of the other races.
     rounds: usize,
 }
 
@@ -65,7 +64,7 @@ const QUICK: Extent = Extent {
     rounds: 1,
 };
 
-/// What is measured, with where to say how far it is.
+/// The configuration and the extent of the measurements, with the line of progress.
 pub(crate) struct Measuring<'a> {
     config: &'a Config,
     extent: Extent,

@@ -1,4 +1,4 @@
-//! A robot that knows a part of a world, with the clock on its planner.
+//! A robot that knows a part of a world, with a clock on its planner.
 
 use crate::clock::Clock;
 use anyhow::{Context, Result};
@@ -31,7 +31,7 @@ pub(crate) struct Situation<'a> {
 }
 
 impl<'a> Situation<'a> {
-    /// A robot at the start of a mission. It plans as `config` says.
+    /// Places a robot at the start of a mission; it plans by `config`.
     pub(crate) fn new(
         world: &'a World,
         mission: &Mission,
@@ -57,7 +57,7 @@ impl<'a> Situation<'a> {
         })
     }
 
-    /// Takes over what a run measured, without a decision: no gain is computed yet.
+    /// Takes over the measurements of a run, without a decision: no gain is computed yet.
     pub(crate) fn follow(&mut self, run: &Run) {
         run.scans.iter().for_each(|scan| {
             self.take_over(scan);
@@ -68,7 +68,7 @@ impl<'a> Situation<'a> {
         }
     }
 
-    /// Stands in the cell of a point, and measures there.
+    /// Puts the robot in the cell of a point, and measures there.
     pub(crate) fn visit(&mut self, point: Point2<f64>) {
         let Some(cell) = self.grid.cell_at(point) else { return };
         let center = self.grid.center(cell);
@@ -77,7 +77,8 @@ impl<'a> Situation<'a> {
         self.scan();
     }
 
-    /// Carries out a decision and measures. Returns how long the planner took to note it \[s\].
+    /// Carries out a decision, measures, and returns the time that the planner took to note it
+    /// \[s\].
     pub(crate) fn go(&mut self, decision: &Decision) -> f64 {
         let mut seconds = 0.0;
         for cell in &decision.path {
@@ -93,12 +94,12 @@ impl<'a> Situation<'a> {
         seconds + self.scan()
     }
 
-    /// Decides. Returns how long that took \[s\].
+    /// Decides, and returns the time taken \[s\].
     pub(crate) fn choose(&mut self) -> (f64, Option<Decision>) {
         self.clock.time(|| self.planner.choose(&self.map, self.at))
     }
 
-    /// E\[I\] of a view-point by the equations as printed.
+    /// Returns E\[I\] of a view-point by the equations as printed.
     pub(crate) fn literal_gain(&self, view_point: Cell) -> f64 {
         let prediction = self.planner.prediction_at(view_point);
         expected_information_gain(&self.map, &self.model, &self.stencil, prediction, view_point)

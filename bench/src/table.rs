@@ -1,21 +1,21 @@
-//! The table that is printed.
+//! The printed table.
 
 use std::fmt::{Display, Formatter, Result};
 
 /// One comparison.
 #[derive(Debug)]
 pub(crate) struct Row {
-    /// What was done, how long it took \[s\].
+    /// The work, and its duration \[s\].
     pub(crate) what: String,
     pub(crate) ours: f64,
-    /// What it is compared with, how long that took \[s\].
+    /// The other way, and its duration \[s\].
     pub(crate) against: String,
     pub(crate) other: f64,
-    /// How many times as long the other should take.
+    /// The target of the ratio of the other duration to ours.
     pub(crate) target: f64,
 }
 
-/// All comparisons, and what else is to be said.
+/// All comparisons, and further notes.
 #[derive(Debug, Default)]
 pub(crate) struct Table {
     rows: Vec<Row>,
@@ -70,7 +70,7 @@ impl Display for Table {
     }
 }
 
-/// A duration as one reads it.
+/// Returns a duration for a reader.
 pub(crate) fn duration(seconds: f64) -> String {
     let (value, unit) = match seconds {
         s if s < 1e-3 => (s * 1e6, "µs"),
@@ -80,7 +80,7 @@ pub(crate) fn duration(seconds: f64) -> String {
     format!("{} {unit}", number(value))
 }
 
-/// Three digits, or all before the point.
+/// Returns a number with three digits, or with all digits before the point.
 fn number(value: f64) -> String {
     let digits = match value {
         v if v >= 99.95 => 0,

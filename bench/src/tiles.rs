@@ -1,4 +1,4 @@
-//! Worlds of any size: the shipped office, again and again.
+//! Worlds of any size: the shipped office, repeated.
 
 use anyhow::Result;
 use covmap_io::parse_ron;
@@ -7,10 +7,10 @@ use std::path::Path;
 
 const OFFICE: &str = include_str!("../../scenarios/office.ron");
 
-/// The margin of a grid of .1 m around its world, in cells.
+/// The margin of a grid of .1 m around its world \[cells\].
 const MARGIN: u32 = 3;
 
-/// The shipped office.
+/// Returns the shipped office.
 pub(crate) fn office(outside: Surface) -> Result<World> {
     Ok(World::from_scenario(&scenario()?, outside)?)
 }
@@ -19,7 +19,7 @@ fn scenario() -> Result<Scenario> {
     Ok(parse_ron(Path::new("scenarios/office.ron"), OFFICE)?)
 }
 
-/// Offices side by side, without walls between them, cut off so that their grid has a number of
+/// Returns offices side by side, without walls between them, cut off for a grid with a number of
 /// cells of .1 m along a side.
 pub(crate) fn offices(cells: u32, outside: Surface) -> Result<World> {
     let tile = scenario()?;
@@ -29,7 +29,7 @@ pub(crate) fn offices(cells: u32, outside: Surface) -> Result<World> {
         |step: f64| (0u32..).map(move |i| f64::from(i) * step).take_while(move |s| *s < side);
     let corners = along(dy).flat_map(|y| along(dx).map(move |x| (x, y)));
     let obstacles = corners.flat_map(|by| tile.obstacles.iter().map(move |o| moved(o, by)));
-    // What lies outside altogether is no matter of this world.
+    // An obstacle entirely outside is not part of this world.
     let obstacles = obstacles.filter(|o| starts_below(&o.shape, side)).collect();
     let extent = Extent { width: side, height: side };
     let scenario = Scenario { name: "offices".into(), extent, start: tile.start, obstacles };
@@ -41,7 +41,7 @@ fn moved(obstacle: &Obstacle, (dx, dy): (f64, f64)) -> Obstacle {
     Obstacle { shape, surface: obstacle.surface }
 }
 
-/// Whether a part of a shape may lie left of and below a line.
+/// Returns whether a part of a shape may lie left of and below a line.
 fn starts_below(shape: &Shape, side: f64) -> bool {
     let points = match shape {
         Shape::Rectangle { center: (x, y), size: (w, h), .. } => vec![(x - w - h, y - w - h)],

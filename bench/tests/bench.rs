@@ -1,11 +1,11 @@
-//! `bench`: that every row is printed. Of times nothing is asserted.
+//! `bench` prints every row; no time is asserted.
 #![allow(clippy::unwrap_used, reason = "tests")]
 #![allow(dead_code, reason = "what types commands is shared")]
 
 #[path = "../../crates/covmap-cli/tests/cli/typed.rs"]
 mod typed;
 
-/// The program that is typed.
+/// The tested program.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_covmap-bench");
 
 use typed::Shell;

@@ -1,12 +1,12 @@
-//! Says which program this is: `COVMAP_VERSION` is the version of Cargo and the commit; and,
-//! where the sources differ from the commit (`dirty`), or there is none, a hash of them.
+//! Sets the version of the program: `COVMAP_VERSION` is the version of Cargo and the commit. If the
+//! sources differ from the commit (`dirty`), or there is none, it also has a hash of the sources.
 
 use sha2::{Digest, Sha256};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What the program is made of.
+/// The sources of the program.
 const SOURCES: [&str; 6] =
     ["Cargo.toml", "Cargo.lock", "crates", "configs/fit", "scenarios", "xtask"];
 
@@ -23,7 +23,7 @@ fn main() {
     println!("cargo::rustc-env=COVMAP_VERSION={}+{version}", env!("CARGO_PKG_VERSION"));
 }
 
-/// The commit, and whether the sources are those of the commit; none if this is no repository
+/// The commit, and whether the sources are those of the commit; `None` if this is not a repository
 /// of its own, as in a released archive.
 fn commit(root: &Path) -> Option<(String, bool)> {
     let git = |arguments: &[&str]| {

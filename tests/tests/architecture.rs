@@ -1,10 +1,10 @@
-//! Invariants 1, 2 and 5 of the architecture, held by the manifests: which crate may name
-//! which.
+//! Invariants 1, 2 and 5 of the architecture, checked in the manifests: the allowed dependencies of
+//! each crate.
 
 use crate::{root, rust_files};
 use std::collections::BTreeSet;
 
-/// Every crate, with the crates of covmap that it uses: the arrows of docs/architecture.md, no more and no less.
+/// Every crate, with the crates of covmap that it uses: exactly the arrows of docs/architecture.md.
 const ARROWS: [(&str, &[&str]); 17] = [
     ("covmap", &[]),
     ("covmap-sonar", &[]),
@@ -87,7 +87,8 @@ const ARROWS: [(&str, &[&str]); 17] = [
     ),
 ];
 
-/// A source file without the modules of its tests, which rustfmt closes with a brace of its own line.
+/// Returns a source file without its test modules, which rustfmt closes with a brace on a line of
+/// its own.
 pub(crate) fn without_tests(text: &str) -> String {
     let (mut code, mut in_tests) = (String::new(), false);
     for line in text.lines() {
@@ -101,7 +102,7 @@ pub(crate) fn without_tests(text: &str) -> String {
     code
 }
 
-/// A crate's normal dependencies, or those of its tests.
+/// Returns a crate's normal dependencies, or those of its tests.
 fn dependencies(package: &str, section: &str) -> BTreeSet<String> {
     let manifest = root().join("crates").join(package).join("Cargo.toml");
     let text = std::fs::read_to_string(&manifest).unwrap();
@@ -111,7 +112,7 @@ fn dependencies(package: &str, section: &str) -> BTreeSet<String> {
     for line in lines {
         if line.starts_with('[') {
             current = line.trim_matches(['[', ']']);
-            // `[dependencies.name]` is one, too.
+            // `[dependencies.name]` is a dependency, too.
             let name = current.strip_prefix(section).and_then(|rest| rest.strip_prefix('.'));
             found.extend(name.map(str::to_owned));
         } else if current == section && !line.starts_with('#') && line.contains('=') {
@@ -202,7 +203,7 @@ fn only_files_and_the_program_touch_the_file_system() {
 
 #[test]
 fn files_are_opened_and_written_in_one_way() {
-    // The homes, and what reads the system's own table of processes.
+    // The homes, and the file that reads the system's table of processes.
     let homes = [
         "new_file.rs",
         "read.rs",

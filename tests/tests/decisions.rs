@@ -1,4 +1,4 @@
-//! A decision by bounds beside one by all gains.
+//! A decision by bounds, compared with a decision by all gains.
 
 use crate::{files, root};
 use covmap_explore::{Event, Limits, explore};
@@ -10,7 +10,7 @@ use covmap_world::{Scenario, Surface, World};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// How many decisions a run takes, and how many of them all gains would not.
+/// Returns the number of decisions of a run, and the number of those that all gains would change.
 fn decisions(scenario: &Path, resolution: f64, strategy: Strategy, scans: usize) -> [usize; 2] {
     let scenario: Scenario = read_ron(scenario).unwrap();
     let world = World::from_scenario(&scenario, Surface::Rough).unwrap();
@@ -24,7 +24,7 @@ fn decisions(scenario: &Path, resolution: f64, strategy: Strategy, scans: usize)
         if let Event::Decision { from, decision, .. } = event {
             let mut planner = view.planner.clone();
             let table = planner.candidate_table(view.map, *from);
-            // Who would measure in vain is passed over.
+            // Candidates without a promise are passed over.
             let Reason::ExpectedChange { scan, .. } = config.planner.reason else { panic!() };
             let least = scan / (resolution * resolution);
             let promises = |cell| {
@@ -37,7 +37,7 @@ fn decisions(scenario: &Path, resolution: f64, strategy: Strategy, scans: usize)
             let score = |cell| table.iter().find(|r| r.cell == cell).map(|record| record.score);
             let promising = table.iter().filter(|r| promises(r.cell));
             let best = promising.map(|r| r.score).fold(f64::NEG_INFINITY, f64::max);
-            // Ties are decided by the literal equations.
+            // The literal equations decide ties.
             let off = 4.0 * GAIN_TOLERANCE * best.abs().max(1.0);
             all += 1;
             others += usize::from(score(decision.target).is_none_or(|score| score < best - off));

@@ -1,4 +1,4 @@
-//! Examples for a fit are what happened in a run.
+//! The examples of a fit match the events of a run.
 
 use crate::root;
 use covmap::{CoverageMap, Grid, Raster};
@@ -11,7 +11,8 @@ use covmap_world::{Scenario, Surface, World};
 use nalgebra::Point2;
 use std::ops::ControlFlow;
 
-/// The lab with smooth walls, in which the robot bumps, explored in cells of .2 m for a while.
+/// Explores the lab with smooth walls for a while, in cells of .2 m; the robot bumps into the
+/// walls.
 fn run(body_evidence: BodyEvidence) -> (Mission, Run, World) {
     let scenario: Scenario = read_ron(root().join("scenarios/lab.ron")).unwrap();
     let mut config = Config { resolution: 0.2, ..Config::b21r() };
@@ -66,7 +67,7 @@ fn scored_are_the_measured_cells_without_those_under_the_body_and_deep_in_walls(
         map.multiply(*cell, &[0.5; 11].map(|p: f64| p + 0.1));
     }
     let (mission, _, world) = run(BodyEvidence::Belief);
-    // Free, pinned; free, not measured; partly covered; first solid layer; deeper.
+    // The cells: free and pinned; free and not measured; partly covered; first solid layer; deeper.
     let mut truth = Truth::new(&world, &mission);
     truth.coverage = Raster::from_fn(grid, |cell| [0.0, 0.0, 0.3, 1.0, 1.0][cell.x as usize]);
     assert_eq!(truth.measured_cells(&map), cells[2..4]);

@@ -1,12 +1,11 @@
 //! One run in the lab for each strategy, to the last bit.
 //!
-//! The hashes change when the behaviour does, or the format of the trace: only on purpose. Then
+//! The hashes change with the behaviour, or with the format of the trace, and only on purpose. Then
+//! this command writes new hashes, and the commit gives the reason:
 //!
 //! ```sh
 //! COVMAP_RENEW_GOLDEN=1 cargo test -p covmap-tests golden
 //! ```
-//!
-//! writes them anew, and the commit says why.
 
 use covmap_explore::{Limits, TraceHasher, explore};
 use covmap_io::read_ron;
@@ -15,7 +14,8 @@ use covmap_world::{Scenario, World};
 use std::fmt::Write;
 use std::ops::ControlFlow;
 
-/// The strategies as the command line takes them, and whether the robot measures while driving.
+/// The strategies in the spelling of the command line, and whether the robot measures while
+/// driving.
 const RUNS: [(&str, Option<f64>); 6] = [
     ("CL", None),
     ("IG", None),
@@ -25,7 +25,8 @@ const RUNS: [(&str, Option<f64>); 6] = [
     ("CL", Some(0.5)),
 ];
 
-/// The hash over all events and the belief of a run in cells of .2 m, and how many scans it took.
+/// Returns the hash over all events and the belief of a run in cells of .2 m, and the number of
+/// scans.
 fn run(strategy: &str, while_driving: Option<f64>) -> (String, usize) {
     let mut config = Config::b21r();
     config.resolution = 0.2;

@@ -1,4 +1,5 @@
-//! The workflow as a whole, in one binary: the shipped files, and the house they live in.
+//! The workflow as a whole, in one binary: the shipped files, and the architecture of the
+//! workspace.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 mod architecture;
@@ -13,12 +14,12 @@ mod turned_buildings;
 
 use std::path::{Path, PathBuf};
 
-/// The root of the workspace.
+/// Returns the root of the workspace.
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap().to_owned()
 }
 
-/// The files of a folder of the workspace with an extension, sorted.
+/// Returns the files of a folder of the workspace with an extension, sorted.
 fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(root().join(folder)).unwrap();
     let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
@@ -28,7 +29,7 @@ fn files(folder: &str, extension: &str) -> Vec<PathBuf> {
     paths
 }
 
-/// The sources under a folder, however deep.
+/// Returns the sources under a folder, at any depth.
 fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
     let (folders, files): (Vec<_>, Vec<_>) = entries.partition(|path| path.is_dir());

@@ -1,5 +1,6 @@
-//! The estimate of a planner's memory beside what it takes. In a program of its own: other tests
-//! take memory at the same time.
+//! The estimate of a planner's memory, compared with the memory taken.
+//!
+//! The test is a program of its own, because other tests take memory at the same time.
 #![cfg(target_os = "linux")]
 #![allow(clippy::unwrap_used, reason = "a test")]
 
@@ -9,14 +10,14 @@ use covmap_plan::{Planner, Strategy, planner_bytes};
 use covmap_sonar::RingSpecification;
 use nalgebra::Point2;
 
-/// What the program has taken so far at most \[bytes\].
+/// Returns the largest memory of the program so far \[bytes\].
 fn peak() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap();
     let line = status.lines().find(|line| line.starts_with("VmHWM:")).unwrap();
     line.split_whitespace().nth(1).unwrap().parse::<u64>().unwrap() * 1024
 }
 
-/// A planner on so many cells a side; returns what it took, and what was estimated.
+/// Makes a planner with `side` cells a side, and returns its memory, taken and estimated.
 fn taken(side: usize, resolution: f64, sensors: usize, strategy: Strategy) -> [u64; 2] {
     let mut config = Config::b21r();
     (config.resolution, config.planner.strategy) = (resolution, strategy);
@@ -37,12 +38,12 @@ fn taken(side: usize, resolution: f64, sensors: usize, strategy: Strategy) -> [u
     let map = CoverageMap::new(grid, config.model.bins).unwrap();
     let middle = grid.cell(grid.len() / 2 + side / 2);
     planner.stand_on(middle);
-    // Where nothing was measured yet nothing is promised, but all candidates are evaluated.
+    // Without measurements no cell promises anything, but all candidates are evaluated.
     drop(planner.choose(&map, middle));
     [peak() - before, estimate]
 }
 
-/// Each takes more than all before it.
+/// Each planner takes more than all before it.
 #[test]
 fn the_estimate_of_memory_is_near_to_what_is_taken() {
     for (side, resolution, sensors, strategy) in [

@@ -1,4 +1,5 @@
-//! The rooms of a crate: no circle of modules that use each other, and no file that is too long.
+//! The structure of the crates: no cycle of modules that use each other, and no file that is too
+//! long.
 
 use crate::architecture::without_tests;
 use crate::docs::source::paths_of_tree;
@@ -6,12 +7,12 @@ use crate::{root, rust_files};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// The longest file \[lines\].
+/// Upper limit on the length of a file \[lines\].
 const LONGEST: usize = 500;
-/// No crate has more than this share of all lines.
+/// Upper limit on the share of a crate in all lines.
 const LARGEST_SHARE: f64 = 0.2;
 
-/// The folders of sources of all packages.
+/// Returns the source folders of all packages.
 fn sources() -> Vec<PathBuf> {
     let crates = std::fs::read_dir(root().join("crates")).unwrap();
     let crates = crates.map(|entry| entry.unwrap().path()).filter(|path| path.is_dir());
@@ -23,7 +24,7 @@ fn lines(file: &Path) -> usize {
     std::fs::read_to_string(file).unwrap().lines().count()
 }
 
-/// The paths of all `use` of a text that begin with `from`.
+/// Returns the paths of every `use` in a text that begin with `from`.
 fn used(code: &str, from: &str) -> Vec<Vec<String>> {
     let begin = format!("use {from}::");
     let trees = code.match_indices(&begin).map(|(at, _)| &code[at + 4..]);
@@ -31,7 +32,7 @@ fn used(code: &str, from: &str) -> Vec<Vec<String>> {
     trees.flat_map(|tree| paths_of_tree(&tree.replace('\n', " "))).collect()
 }
 
-/// Which module at the top of a crate uses which other.
+/// Returns, for each module at the top of a crate, the modules that it uses.
 fn uses(src: &Path) -> BTreeMap<String, BTreeSet<String>> {
     let code = |file: &Path| without_tests(&std::fs::read_to_string(file).unwrap());
     let top = |file: &Path| {
@@ -40,7 +41,7 @@ fn uses(src: &Path) -> BTreeMap<String, BTreeSet<String>> {
     };
     let files: Vec<PathBuf> = rust_files(src);
     let modules: BTreeSet<String> = files.iter().map(|file| top(file)).collect();
-    // What the crate exports at its top, and from which module.
+    // The module behind each name that the crate exports at its top.
     let mut home: BTreeMap<String, String> =
         modules.iter().map(|m| (m.clone(), m.clone())).collect();
     let lib = code(&src.join("lib.rs"));
@@ -63,7 +64,8 @@ fn uses(src: &Path) -> BTreeMap<String, BTreeSet<String>> {
     uses
 }
 
-/// What is left if modules that use nothing are taken away, again and again: circles, and who uses them.
+/// Returns the cycles, and the modules that use them: modules that use nothing are removed
+/// repeatedly.
 fn circles(mut uses: BTreeMap<String, BTreeSet<String>>) -> BTreeSet<String> {
     loop {
         let before = uses.len();

@@ -1,4 +1,4 @@
-//! Every shipped configuration and scenario is loaded and run.
+//! Every shipped configuration and scenario loads and runs.
 
 use crate::files;
 use covmap::{CoverageMap, Grid, ReadOut};
@@ -25,7 +25,7 @@ fn default_config() -> Config {
     config(&crate::root().join("configs/b21r.ron"))
 }
 
-/// The shipped configurations; beside them stand campaigns, which name worlds.
+/// Returns the shipped configurations; campaigns, which name worlds, lie in the same folder.
 fn configurations() -> Vec<std::path::PathBuf> {
     let is_campaign =
         |path: &std::path::PathBuf| std::fs::read_to_string(path).unwrap().contains("worlds: [");

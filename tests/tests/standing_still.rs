@@ -1,4 +1,4 @@
-//! A robot that stands still grows no surer than its errors allow.
+//! A robot that stands still becomes no more certain than its errors allow.
 
 use crate::root;
 use covmap::CoverageMap;
@@ -10,8 +10,8 @@ use covmap_model::{Looks, Repeats, SensorModel};
 use covmap_sonar::Scan;
 use covmap_world::{Scenario, Surface, World};
 
-/// The class mean of the log-likelihood of the cells that were measured, after so many scans from one
-/// place each.
+/// Returns the class mean of the log-likelihood of the measured cells, after each number of scans
+/// from one place.
 fn score(scenario: &str, seed: u64, share: f64, scans: [usize; 2]) -> [f64; 2] {
     let path = root().join("scenarios").join(scenario).with_extension("ron");
     let scenario: Scenario = read_ron(&path).unwrap();
@@ -48,7 +48,7 @@ fn three_hundred_scans_from_one_place_are_no_worse_than_ten() {
         let share = Config::b21r().model.update.cause().unwrap().repeats.share;
         let [few, many] = score(scenario, seed, share, [10, 300]);
         assert!(many > few - 0.02, "{scenario}: {few} {many}");
-        // What would be, if every look told something new.
+        // The result if every look were independent.
         let [_, independent] = score(scenario, seed, 0.0, [10, 300]);
         assert!(independent < many - 0.2, "{scenario}: {independent} {many}");
     }

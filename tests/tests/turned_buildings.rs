@@ -1,4 +1,4 @@
-//! Buildings at every angle: the robot gets through each door that is wide enough.
+//! Buildings at every angle: the robot passes every door that is wide enough.
 
 use crate::root;
 use covmap_explore::{Ending, Limits, explore};
@@ -10,8 +10,8 @@ use nalgebra::Vector2;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-/// A shipped building, turned by an angle \[rad\] and shifted by less than a cell, explored in
-/// cells of .2 m.
+/// Explores a shipped building in cells of .2 m, turned by an angle \[rad\] and shifted by less
+/// than a cell.
 fn explored(building: &str, angle: f64, shift: Vector2<f64>) -> (Ending, Score, CutOff) {
     let scenario: Scenario = read_ron(root().join(format!("scenarios/{building}.ron"))).unwrap();
     let mut config: Config = read_ron(root().join("configs/b21r.ron")).unwrap();

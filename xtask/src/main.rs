@@ -1,5 +1,5 @@
-//! `cargo xtask COMMAND` runs the program `covmap` from its sources, and what is of this repository alone: the
-//! experiments of the paper, and the tools of those who work on it.
+//! `cargo xtask COMMAND` runs the program `covmap` from its sources, and commands of this
+//! repository only: the experiments of the paper, and the developers' tools.
 #![allow(clippy::print_stdout, reason = "a program talks to its user")]
 
 mod arguments;
@@ -10,7 +10,7 @@ use arguments::{FIGURE_EXAMPLES, Figure, PAPER_EXAMPLES, Paper, Rest, Table};
 use clap::Subcommand;
 use std::process::ExitCode;
 
-/// What can be done here.
+/// The commands of this repository.
 #[derive(Debug, Subcommand)]
 enum Command {
     #[command(flatten)]
@@ -23,12 +23,14 @@ enum Command {
     /// Runs all of the paper's experiments, draws all figures, and judges all claims.
     #[command(after_help = PAPER_EXAMPLES)]
     Paper(Paper),
-    /// Measures how fast decisions, updates and echoes are, as ratios: compiles and runs covmap-bench.
+    /// Measures the speed of decisions, updates and echoes, as ratios: compiles and runs
+    /// covmap-bench.
     #[command(disable_help_flag = true)]
     Bench(Rest),
-    /// Checks the pages of all crates, their links, and what docs/ says of files and commands.
+    /// Checks the pages of all crates, their links, and the files and commands that docs/ names.
     DocsCheck,
-    /// Puts faults into the core one by one, to see whether a test notices: runs cargo-mutants, for hours.
+    /// Plants faults in the core one by one, to see whether a test notices: runs cargo-mutants, for
+    /// hours.
     #[command(disable_help_flag = true)]
     Mutants(Rest),
 }

@@ -36,7 +36,7 @@ pub(crate) fn paper(arguments: &Paper) -> Result<ExitCode> {
     })
 }
 
-/// Does something in a session, and says where the results are; 130 after Ctrl-C.
+/// Runs a task in a session, and prints the folder of the results; 130 after Ctrl-C.
 fn draw(
     arguments: &Experiments,
     worlds: &[(String, PathBuf)],
@@ -64,7 +64,7 @@ fn draw(
     Ok(ExitCode::SUCCESS)
 }
 
-/// Looks on from the terminal.
+/// The observer on the terminal.
 struct Onlooker<'a> {
     terminal: Terminal<'a>,
     quiet: bool,

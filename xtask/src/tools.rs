@@ -1,4 +1,4 @@
-//! Tools of those who work on covmap: each starts Cargo, which does it.
+//! Developers' tools: each starts Cargo, which does the work.
 
 use anyhow::{Context, Result};
 use std::env;
@@ -6,10 +6,10 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Command, ExitCode};
 
-/// The crates whose tests are tested by faults: those of the paper's equations and rules.
+/// The crates for mutation tests: those with the paper's equations and rules.
 const CORE: [&str; 5] = ["covmap", "covmap-model", "covmap-gain", "covmap-plan", "covmap-explore"];
 
-/// Runs covmap-bench in the folder in which the user is, since it writes there.
+/// Runs covmap-bench in the user's current folder, because it writes there.
 pub(crate) fn bench(rest: &[String]) -> Result<ExitCode> {
     let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("../Cargo.toml");
     let mut cargo = cargo("run");
@@ -33,14 +33,14 @@ pub(crate) fn mutants(rest: &[String]) -> Result<ExitCode> {
     ended(mutants.args(["--timeout", "300"]).args(rest))
 }
 
-/// The Cargo by which this was started.
+/// Returns the Cargo that started this program.
 fn cargo(command: &str) -> Command {
     let mut cargo = Command::new(env::var_os("CARGO").unwrap_or(OsString::from("cargo")));
     cargo.arg(command);
     cargo
 }
 
-/// How it ended, as this ends.
+/// Returns the exit code of the command.
 fn ended(command: &mut Command) -> Result<ExitCode> {
     let status = command.status().with_context(|| format!("{command:?} cannot be started"))?;
     let code = status.code().and_then(|code| u8::try_from(code).ok());

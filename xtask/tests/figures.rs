@@ -5,7 +5,7 @@
 #[path = "../../crates/covmap-cli/tests/cli/typed.rs"]
 mod typed;
 
-/// The program that is typed.
+/// The tested program.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_xtask");
 
 use typed::{Shell, shipped};
@@ -77,7 +77,7 @@ fn what_is_no_figure_of_ours_and_what_has_no_campaign_is_refused() {
     shell.refuse("paper --out file/x", &["file/x: cannot be made"]);
 }
 
-/// A folder with quick campaigns of Table 1 and Fig. 7 in a small room, from drawn starts.
+/// Makes a folder with quick campaigns of Table 1 and Fig. 7 in a small room, from drawn starts.
 fn small(keep_paths: bool) -> Shell {
     let shell = Shell::new();
     std::fs::create_dir(shell.path("configs")).unwrap();
@@ -119,7 +119,7 @@ fn fig_5_repeats_the_recorded_runs_and_fig_7_draws_their_paths() {
     let column = |name: &str| column(&shell, "f/table1.csv", name);
     assert_eq!(column("times")[..3], ["", "1", "50"]);
     assert!(column("cut_short").iter().all(|told| told.ends_with(" of 2")));
-    // The counts of n* name their campaign.
+    // The names of the campaigns contain the counts of n*.
     let names: Vec<String> = std::fs::read_dir(shell.path("f/campaigns"))
         .unwrap()
         .map(|entry| entry.unwrap().file_name().into_string().unwrap())
@@ -130,7 +130,7 @@ fn fig_5_repeats_the_recorded_runs_and_fig_7_draws_their_paths() {
     );
 }
 
-/// The fields of a column of a table.
+/// Returns the fields of a column of a table.
 fn column(shell: &Shell, table: &str, name: &str) -> Vec<String> {
     let text = std::fs::read_to_string(shell.path(table)).unwrap();
     let row = |line: &str| -> Vec<String> {
@@ -185,7 +185,7 @@ fn all_experiments_are_checked_before_the_first_run_and_an_old_report_is_not_tou
     let shell = small(true);
     std::fs::create_dir(shell.path("p")).unwrap();
     shell.write("p/figure1.svg", "old");
-    // There is no campaign of Fig. 6.
+    // The campaign of Fig. 6 is missing.
     let typed = shell.expect("paper --quick --quiet --out p", 2);
     assert!(typed.err.contains("configs/fig6-quick.ron: cannot be read"), "{typed:?}");
     assert!(!shell.path("p/campaigns").exists() && shell.path("p/figure1.svg").exists());

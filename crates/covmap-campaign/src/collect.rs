@@ -1,4 +1,4 @@
-//! What several machines did becomes one campaign.
+//! Joining the runs of several machines in one campaign.
 
 use crate::error::{FolderFault, Result, of_folder};
 use crate::folder::{self, Folder, Manifest, Planned, Recorded};
@@ -7,23 +7,23 @@ use crate::tables;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// What was collected.
+/// The result of collecting.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Collected {
-    /// What the campaign is called.
+    /// Name of the campaign.
     pub name: String,
     /// The number of runs that are recorded now.
     pub recorded: usize,
-    /// The number of runs that the campaign has.
+    /// The number of runs of the campaign.
     pub of: usize,
-    /// Files of runs that are damaged, and nowhere whole.
+    /// Damaged files of runs that are whole in no folder.
     pub damaged: Vec<PathBuf>,
 }
 
 /// Copies the runs of several folders of one campaign into one, and writes its tables.
 ///
 /// # Errors
-/// If a folder is of no campaign, of another one, or of another version; or if something cannot be written.
+/// If a folder is of no campaign, of another one, or of another version; or if a file cannot be written.
 ///
 /// # Panics
 /// If there is no folder.
@@ -32,7 +32,7 @@ pub fn collect(dirs: &[PathBuf], out: &Path) -> Result<Collected> {
     if let Some(present) = Manifest::read(out)? {
         check_version((out, &present), (&dirs[0], &manifest))?;
     }
-    // Which folder has a run; the first of several, since all are the same.
+    // The folder that has a run; the first of several, as all have the same.
     let mut found: BTreeMap<&str, &Path> = BTreeMap::new();
     let mut damaged: BTreeMap<&str, PathBuf> = BTreeMap::new();
     for dir in dirs {
@@ -66,7 +66,7 @@ pub fn collect(dirs: &[PathBuf], out: &Path) -> Result<Collected> {
     })
 }
 
-/// The campaign of which all folders are.
+/// The list of the campaign to which all folders belong.
 fn manifest(dirs: &[PathBuf]) -> Result<Manifest> {
     let read =
         |dir: &PathBuf| Manifest::read(dir)?.ok_or_else(|| of_folder(dir, FolderFault::None));

@@ -1,4 +1,4 @@
-//! What is wrong with a campaign.
+//! Errors of a campaign.
 
 use crate::RunKey;
 use covmap_explore::ParameterError;
@@ -7,13 +7,13 @@ use covmap_lab::{Fault, LabError, OverrideError};
 use covmap_plan::StrategyError;
 use std::path::{Path, PathBuf};
 
-/// Why a campaign cannot be run, or its results not be read, in one sentence.
+/// Error in a campaign or in its results, in one sentence.
 #[derive(Debug, thiserror::Error)]
 pub enum CampaignError {
     /// A file cannot be read or written.
     #[error(transparent)]
     File(#[from] FileError),
-    /// A world, a configuration or a run.
+    /// A world, a configuration or a run has a fault.
     #[error(transparent)]
     Lab(#[from] LabError),
     /// The threads of a campaign cannot be made.
@@ -27,7 +27,7 @@ pub enum CampaignError {
     Folder {
         /// The folder, or a file in it.
         dir: PathBuf,
-        /// Why.
+        /// The fault.
         fault: FolderFault,
     },
     /// The starts in a world cannot be found.
@@ -35,7 +35,7 @@ pub enum CampaignError {
     Starts {
         /// The world's file.
         file: PathBuf,
-        /// Why.
+        /// The fault.
         fault: StartsFault,
     },
     /// The command line names a world that the campaign does not have.
@@ -44,12 +44,12 @@ pub enum CampaignError {
     /// None of the worlds is there.
     #[error("no world of the campaign is there, so there is nothing to run")]
     NoWorld,
-    /// The number of seeds is impossible.
+    /// The number of seeds is out of its interval.
     #[error("seeds: {count} are asked for; the number must lie in 1..={most}")]
     Seeds {
-        /// The number.
+        /// The number of seeds.
         count: usize,
-        /// The largest.
+        /// Largest allowed number.
         most: usize,
     },
     /// The seeds run out.
@@ -61,7 +61,7 @@ pub enum CampaignError {
     /// A name is too long, empty, or has control characters.
     #[error("{list}: {name:?} is no name: 1 to 100 characters are needed")]
     Name {
-        /// The list that it stands in.
+        /// The list with the name.
         list: &'static str,
         /// The name.
         name: String,
@@ -69,7 +69,7 @@ pub enum CampaignError {
     /// A list has no entry.
     #[error("{0}: at least one is needed")]
     Empty(&'static str),
-    /// An entry of a list stands there twice.
+    /// A list has an entry twice.
     #[error("{list}: {entry} stands there twice")]
     Twice {
         /// The list.
@@ -77,15 +77,15 @@ pub enum CampaignError {
         /// The entry.
         entry: String,
     },
-    /// A strategy is impossible.
+    /// A number of a strategy is out of its range.
     #[error("strategies: {0}")]
     Strategy(#[from] StrategyError),
     /// A metric is none of the numbers of a run.
     #[error("metrics: {name:?} is none; they are {}", .known.join(", "))]
     Metric {
-        /// What was named.
+        /// The name in the campaign.
         name: String,
-        /// All that there are.
+        /// Names of all metrics.
         known: &'static [&'static str],
     },
     /// A setting allows no scan.
@@ -101,28 +101,28 @@ pub enum CampaignError {
         /// The path of the parameter.
         path: String,
     },
-    /// A setting overrides what cannot be.
+    /// A setting overrides a parameter in an impossible way.
     #[error("settings: {setting}: overrides: {error}")]
     Override {
         /// The setting.
         setting: String,
-        /// Why.
+        /// The error of the override.
         error: OverrideError,
     },
     /// The campaign has too many runs.
     #[error("the campaign has more than {most} runs ({}); divide it into several", counted(*.runs))]
     ManyRuns {
-        /// How many, if that is a number.
+        /// The number of runs; `None` if it is too large to count.
         runs: Option<usize>,
-        /// The most.
+        /// Largest allowed number.
         most: usize,
     },
-    /// A world is moved in a way in which it cannot be.
+    /// A world is turned or shifted in an impossible way.
     #[error("worlds: {world}: {fault}")]
     Moved {
         /// The world.
         world: String,
-        /// Why.
+        /// The fault.
         fault: Fault,
     },
     /// Two runs are the same.
@@ -133,94 +133,94 @@ pub enum CampaignError {
     Worker,
 }
 
-/// What is wrong with a folder of results.
+/// Fault of a folder of results.
 #[derive(Debug, thiserror::Error)]
 pub enum FolderFault {
-    /// It was written by another version.
+    /// Its format is that of another version.
     #[error("a campaign of format {found}; this covmap has {known}")]
     Format {
-        /// The format of the folder.
+        /// Format of the folder.
         found: u32,
-        /// The format that is read.
+        /// Format that can be read.
         known: u32,
     },
-    /// It is a link.
+    /// The folder is a link.
     #[error("is a symbolic link, into which no run is written")]
     Link,
-    /// It holds other results.
+    /// The folder holds other results.
     #[error(
         "holds the results of another campaign ({0}), or of this one before it was changed; name another folder with --out"
     )]
     OtherCampaign(String),
-    /// It holds another campaign than the first of several folders.
+    /// The folder holds another campaign than the first of several folders.
     #[error("holds another campaign ({name}) than {} ({first_name})", shown(first))]
     Differs {
-        /// What it holds.
+        /// Name of the campaign in the folder.
         name: String,
         /// The first folder.
         first: PathBuf,
-        /// What that holds.
+        /// Name of the campaign in the first folder.
         first_name: String,
     },
-    /// It was made by another version than the first of several folders.
+    /// Another version made the folder than the first of several folders.
     #[error(
         "was made by covmap {version}, {} by {first_version}; results of different versions are not mixed",
         shown(first)
     )]
     OtherVersion {
-        /// The version that made it.
+        /// The version that made the folder.
         version: String,
         /// The first folder.
         first: PathBuf,
-        /// The version that made that.
+        /// The version that made the first folder.
         first_version: String,
     },
-    /// It is something else, into which nothing is written.
+    /// The folder is not of a campaign, so covmap does not write into it.
     #[error("is no folder of a campaign; name another with --out")]
     Foreign,
-    /// It is something else, from which nothing is read.
+    /// The folder is not of a campaign, so covmap does not read from it.
     #[error("is no folder of a campaign")]
     None,
-    /// It has no paths of a run.
+    /// The folder has no paths of a run.
     #[error("has no paths of {0}; the campaign needs `keep_paths: true`")]
     NoPaths(Box<RunKey>),
     /// The file of a run is damaged.
     #[error("the file of {0} is damaged")]
     Damaged(Box<RunKey>),
-    /// Its lock is none.
+    /// The folder's lock is not a lock of covmap.
     #[error("is no lock that covmap made; remove it")]
     Lock,
-    /// Another process writes it.
+    /// Another process writes into the folder.
     #[error("another covmap is writing into this folder")]
     Busy,
 }
 
-/// Why there are no starts.
+/// Fault of the starts in a world.
 #[derive(Debug, thiserror::Error)]
 pub enum StartsFault {
     /// The list is empty.
     #[error("at least one is needed")]
     Empty,
-    /// The number is impossible.
+    /// The number of starts is out of its interval.
     #[error("{count} cannot be drawn; the number must lie in 1..={most}")]
     Count {
-        /// The number.
+        /// The number of starts.
         count: usize,
-        /// The largest.
+        /// Largest allowed number.
         most: usize,
     },
     /// The world has too few places.
     #[error("{count} cannot be drawn: only {there} places have room")]
     Room {
-        /// How many are asked for.
+        /// The number of starts to draw.
         count: usize,
-        /// How many there are.
+        /// The number of places with room.
         there: usize,
     },
     /// The robot is too large for the world.
     #[error("a robot of radius {0} m fits nowhere in this world")]
     Nowhere(f64),
-    /// The cells are impossible.
+    /// The grid of the world is impossible.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
 }
@@ -232,7 +232,7 @@ fn counted(runs: Option<usize>) -> String {
 /// The result of work on a campaign.
 pub type Result<T, E = CampaignError> = std::result::Result<T, E>;
 
-/// Says of which folder a fault is.
+/// Names the folder of a fault.
 pub(crate) fn of_folder(dir: &Path, fault: FolderFault) -> CampaignError {
     CampaignError::Folder { dir: dir.to_owned(), fault }
 }

@@ -12,21 +12,21 @@ use indexmap::IndexMap;
 use std::ops::ControlFlow;
 use std::time::Duration;
 
-/// The share of explored cells is looked at again after this distance \[m\] …
+/// Least distance after which the share of explored cells is evaluated again \[m\].
 const LOOK_AFTER: f64 = 0.5;
-/// … or after this share of the path so far, whichever is more.
+/// Least share of the path so far after which the share of explored cells is evaluated again.
 const LOOK_AFTER_SHARE: f64 = 0.01;
 
-/// Looks at every event of a run, and says whether it goes on.
+/// Hook that receives every event of a run, and decides whether the run goes on.
 type Watch<'a> = dyn FnMut(&Event, &View<'_>) -> ControlFlow<()> + 'a;
 
-/// A run that came to its end.
+/// The results of a run that came to its end.
 pub(crate) struct Done {
     pub record: RunRecord,
     pub paths: Option<Paths>,
 }
 
-/// Does one run; `None` if it is told to stop before its end.
+/// Does one run; `None` if `watch` stops it before its end.
 pub(crate) fn execute(plan: &Plan, job: &Job, watch: &mut Watch<'_>) -> Result<Option<Done>> {
     let (world, experiment) = (&plan.cases[job.case].world, plan.experiment(job)?);
     let key = job.planned.key.clone();
@@ -51,8 +51,8 @@ fn measure(
     let mut tally = Tally::new(mission).map_err(LabError::from)?;
     let mut deciding = Duration::ZERO;
     let (mut explored, mut look_at) = (Vec::new(), 0.0);
-    // A run has a thread of its own, and its time is the one that this thread computes; without
-    // that of what is done here.
+    // A run has its own thread, and its time is the computing time of this thread, without the time
+    // of this hook.
     let mut aside = Duration::ZERO;
     let begun = ThreadTime::now();
     let mut last = ThreadTime::now();

@@ -1,7 +1,7 @@
 //! The folder of a campaign: a list of its runs, and a file for each run that is done.
 //!
 //! The file of a run is there whole or not at all. Each of its three lines has its own
-//! checksum: what came out, how long it took, and the paths or `null`.
+//! checksum: the outcome, the times, and the paths or `null`.
 
 use crate::error::{FolderFault, Result, of_folder};
 use crate::paths::Paths;
@@ -20,41 +20,41 @@ const FORMAT: u32 = 1;
 const LIST: &str = "campaign.json";
 const RUNS: &str = "runs";
 const LOCK: &str = "lock";
-/// The digits of the name of a run.
+/// The number of digits of a run's name.
 const ID_DIGITS: usize = 32;
-/// The longest file of a run, with its paths, that is read \[bytes\].
+/// Largest file of a run, with its paths, that is read \[bytes\].
 const LONGEST_RECORD: u64 = 64 << 20;
 
-/// A run that is to be done.
+/// A planned run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Planned {
-    /// Which.
+    /// Key of the run.
     pub key: RunKey,
-    /// A hash of all that it is a function of; it names the run's file.
+    /// Hash of everything that the run is a function of; it names the run's file.
     pub id: String,
 }
 
-/// What a campaign is, without what it is made from.
+/// List of a campaign's runs.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
-    /// The version of this format.
+    /// Version of this format.
     covmap_campaign: u32,
-    /// What the campaign is called.
+    /// Name of the campaign.
     pub name: String,
-    /// A hash of all runs, but for the program that does them.
+    /// Hash of all runs, without the version of the program.
     campaign: String,
-    /// The program.
+    /// Version of the program.
     pub version: String,
-    /// What is summarised.
+    /// The metrics of the summary.
     pub metrics: Vec<String>,
     /// All runs, in order.
     pub runs: Vec<Planned>,
 }
 
 impl Manifest {
-    /// A campaign whose runs have names that do not depend on the program yet.
+    /// Returns the list of a campaign. Names in `runs` do not depend on the program; those in the list do.
     pub fn new(name: &str, metrics: &[String], runs: Vec<Planned>, version: &str) -> Self {
         let mut all = metrics.iter().fold(Digest::default().with(name), Digest::with);
         for Planned { key, id } in &runs {
@@ -74,10 +74,10 @@ impl Manifest {
         }
     }
 
-    /// The list in a folder; none if there is none.
+    /// Reads the list in a folder; `None` if the folder has no list.
     ///
     /// # Errors
-    /// If it cannot be read, or is of another format.
+    /// If the list cannot be read, or is of another format.
     pub fn read(dir: &Path) -> Result<Option<Self>> {
         let file = dir.join(LIST);
         if !file.exists() {
@@ -91,20 +91,20 @@ impl Manifest {
         Ok(Some(manifest))
     }
 
-    /// Whether both are the same campaign, whichever program does it.
+    /// Whether both lists are of the same campaign, with any version of the program.
     pub fn is_campaign(&self, other: &Self) -> bool {
         self.campaign == other.campaign
     }
 }
 
-/// A folder that this process alone writes.
+/// A folder that only this process writes.
 #[derive(Debug)]
 pub(crate) struct Folder {
     dir: PathBuf,
     _lock: File,
 }
 
-/// What came out, with the name of the file that it belongs in.
+/// The outcome of a run, with the name of its file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Outcome {
@@ -114,10 +114,10 @@ struct Outcome {
 }
 
 impl Folder {
-    /// Makes a folder for a campaign, or goes on in one of the same campaign.
+    /// Makes a folder for a campaign, or opens one of the same campaign.
     ///
     /// # Errors
-    /// If something else is there, or another process writes it. Then nothing has changed.
+    /// If something else is there, or another process writes the folder. Then nothing has changed.
     pub(crate) fn open(dir: &Path, manifest: &Manifest) -> Result<Self> {
         Self::check(dir, manifest)?;
         let runs = dir.join(RUNS);
@@ -129,7 +129,7 @@ impl Folder {
         fs::create_dir_all(&runs).map_err(FileError::io(&runs, "made"))?;
         for entry in fs::read_dir(&runs).map_err(FileError::io(&runs, "read"))?.flatten() {
             if is_in_flight(&entry.file_name().to_string_lossy()) {
-                // Of a link that is called so the link alone is removed.
+                // If the entry is a link, only the link is removed.
                 let _ = fs::remove_file(entry.path());
             }
         }
@@ -142,7 +142,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// Whether a folder may be made, or gone on in, for a campaign. Nothing is changed.
+    /// Checks that a folder may be made or opened for a campaign, without changing anything.
     ///
     /// # Errors
     /// If something else is there.
@@ -156,7 +156,7 @@ impl Folder {
         }
     }
 
-    /// How many files of other versions of the program are there.
+    /// The number of files that other versions of the program wrote.
     pub(crate) fn strangers(&self, manifest: &Manifest) -> Result<usize> {
         let ids: std::collections::BTreeSet<&str> =
             manifest.runs.iter().map(|run| run.id.as_str()).collect();
@@ -168,7 +168,7 @@ impl Folder {
         Ok(entries.flatten().filter(|entry| !known(entry)).count())
     }
 
-    /// Writes the file of a run; it is on the disk when this returns.
+    /// Writes the file of a run; when this returns, the file is on the disk.
     pub(crate) fn write(&self, id: &str, record: &RunRecord, paths: Option<&Paths>) -> Result<()> {
         let RunRecord { key, values, times } = record.clone();
         let outcome = Outcome { id: id.to_owned(), key, values };
@@ -184,12 +184,12 @@ impl Folder {
     }
 }
 
-/// A run that is recorded, or not, or not any longer.
+/// The record of a run in a folder.
 #[derive(Debug)]
 pub(crate) enum Recorded {
     Whole(Box<RunRecord>),
     Missing,
-    /// Its file is damaged.
+    /// The run's file is damaged.
     Damaged(PathBuf),
 }
 
@@ -203,7 +203,7 @@ impl Recorded {
     }
 }
 
-/// What is recorded of a run; whether its paths are whole is looked at only if they are wanted.
+/// Reads the record of a run; checks its paths only if `with_paths`.
 pub(crate) fn read(dir: &Path, planned: &Planned, with_paths: bool) -> Recorded {
     let file = file(dir, &planned.id);
     if fs::symlink_metadata(&file).is_err() {
@@ -222,12 +222,12 @@ pub(crate) fn read(dir: &Path, planned: &Planned, with_paths: bool) -> Recorded 
     record.map_or(Recorded::Damaged(file), |record| Recorded::Whole(Box::new(record)))
 }
 
-/// What is recorded of some runs, in their order, read side by side.
+/// Reads the records of some runs in parallel, in their order.
 pub(crate) fn read_all(dir: &Path, runs: &[&Planned], with_paths: bool) -> Vec<Recorded> {
     runs.par_iter().map(|planned| read(dir, planned, with_paths)).collect()
 }
 
-/// The paths of a run in the folder of a campaign that keeps them.
+/// Reads the paths of a run in the folder of a campaign that keeps them.
 ///
 /// # Errors
 /// If there is no such run, if it has no paths, or if its file is damaged.
@@ -258,7 +258,7 @@ impl Lines {
         self.checked(|line| serde_json::from_str(line).ok())
     }
 
-    /// Checks a line without making anything of it.
+    /// Checks a line without parsing it.
     fn skip(&mut self) -> Option<()> {
         self.checked(|_| Some(()))
     }
@@ -281,8 +281,8 @@ pub(crate) fn copy(from: &Path, to: &Folder, id: &str) -> Result<()> {
     replace(&to, &read_bytes(from, LONGEST_RECORD)?)
 }
 
-/// Writes the file of a run, in the place of one that is damaged. A link in its place is removed
-/// itself; what it leads to stays.
+/// Writes the file of a run; replaces a damaged one. A link in the file's place is removed, and the
+/// target of the link stays.
 fn replace(file: &Path, bytes: &[u8]) -> Result<()> {
     if fs::symlink_metadata(file).is_ok_and(|there| there.is_symlink()) {
         fs::remove_file(file).map_err(FileError::io(file, "removed"))?;
@@ -290,8 +290,8 @@ fn replace(file: &Path, bytes: &[u8]) -> Result<()> {
     Ok(write_file(file, bytes, Replace::Any)?)
 }
 
-/// Whether a name is that of a run that was in flight when a process was killed, as this version
-/// or an earlier one wrote it.
+/// Whether a name is that of a run's file that was not finished when the process was killed, as this
+/// version or an earlier one named it.
 fn is_in_flight(name: &str) -> bool {
     let Some((id, _)) = name.split_once(".run.partial").or(name.split_once(".partial")) else {
         return false;
@@ -299,12 +299,12 @@ fn is_in_flight(name: &str) -> bool {
     id.len() == ID_DIGITS && id.bytes().all(|digit| digit.is_ascii_hexdigit())
 }
 
-/// Whether something is there that no campaign wrote.
+/// Whether a folder holds something that no campaign wrote.
 fn is_foreign(dir: &Path) -> Result<bool> {
     match fs::read_dir(dir) {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(false),
         Err(error) => Err(FileError::io(dir, "read")(error).into()),
-        // A process that was killed early left no more than these.
+        // A process that was killed early leaves only these.
         Ok(entries) => {
             let ours = [RUNS, LOCK, "campaign.partial", "campaign.json.partial"];
             Ok(entries.flatten().any(|e| !ours.iter().any(|name| e.file_name() == *name)))
@@ -316,7 +316,7 @@ fn lock(dir: &Path) -> Result<File> {
     let path = dir.join(LOCK);
     let lock = match File::create_new(&path) {
         Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {
-            // It is locked and nothing is written into it, but a link may lead to anything.
+            // The file is only locked, not written, but a link may lead to anything.
             if !fs::symlink_metadata(&path).is_ok_and(|lock| lock.is_file()) {
                 return Err(of_folder(&path, FolderFault::Lock));
             }

@@ -1,10 +1,10 @@
 //! Campaigns: worlds × settings × strategies × starts × seeds, run in parallel and recorded run by run.
 //!
-//! A [`Campaign`] is read from its file, [`run`] does what is not recorded yet, and [`collect()`] joins what
-//! several machines did. Every run is a function of its [`RunKey`], the files that it names, and the
-//! program, [`VERSION`]; none of these is ever mixed with another.
+//! A [`Campaign`] is read from its file, [`run`] does the runs that are not recorded yet, and [`collect()`]
+//! joins the runs of several machines. Every run is a function of its [`RunKey`], the files that it names,
+//! and the program, [`VERSION`]. Runs with different files or programs are never mixed.
 //!
-//! This crate knows nothing of terminals and arguments.
+//! This crate does not depend on terminals or arguments.
 //!
 //! # Units
 //! Metres and seconds; degrees in files.

@@ -1,6 +1,6 @@
-//! What is measured of a run.
+//! The numbers of a run.
 
-/// The names of all numbers that are measured of a run, in the order of the columns of `runs.csv`.
+/// Names of all numbers of a run, in the order of the columns of `runs.csv`.
 pub const NUMBERS: [&str; 46] = [
     "resolution",
     "scans",

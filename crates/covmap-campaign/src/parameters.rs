@@ -1,12 +1,12 @@
-//! The numbers of a strategy, each in a column of its own, so that tables can be sorted by them.
+//! The numbers of a strategy, each in its own column, so that a user can sort tables by them.
 
 use covmap_plan::Strategy;
 
-/// The columns of all tables that have a strategy: α of IG_CL, the radius of IG_WIN \[m\], and n
-/// and d0 \[m\] of COUNT.
+/// Columns of a strategy's numbers in all tables: α of IG_CL, the radius of IG_WIN \[m\], and n and
+/// d0 \[m\] of COUNT.
 pub const PARAMETERS: [&str; 4] = ["alpha", "radius", "times", "half_distance"];
 
-/// The fields of a strategy in [`PARAMETERS`]; empty where it has no such number.
+/// Returns the fields of a strategy in [`PARAMETERS`]; empty where the strategy has no such number.
 pub fn parameters(strategy: &Strategy) -> [String; PARAMETERS.len()] {
     let (mut alpha, mut radius, mut times, mut half_distance) = (None, None, None, None);
     match *strategy {

@@ -20,10 +20,10 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-/// The most runs of one campaign.
+/// Largest number of runs of one campaign.
 const MOST_RUNS: usize = 100_000;
 
-/// Every N-th run only: 2/3 are the runs 1, 4, 7 … of those counted from 0.
+/// Every N-th run of a campaign: 2/3 are the runs 1, 4, 7 …, counted from 0.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     number: usize,
@@ -65,22 +65,22 @@ pub struct Case {
     pub config: Config,
     /// The configuration's file, for errors.
     name: PathBuf,
-    /// How a run is limited.
+    /// Limits of a run.
     pub limits: Limits,
-    /// Where the robot starts.
+    /// The robot's starts.
     pub starts: Vec<Isometry2<f64>>,
-    /// The hash of the world's files, and how it is moved.
+    /// Hash of the world's files, its turn and its shift.
     digest: Digest,
 }
 
 /// One run.
 #[derive(Debug)]
 pub struct Job {
-    /// Which run.
+    /// The planned run.
     pub planned: Planned,
-    /// Which of the cases.
+    /// Index of its case.
     pub case: usize,
-    /// How view-points are chosen.
+    /// Strategy that chooses view-points.
     pub strategy: Strategy,
 }
 
@@ -95,15 +95,15 @@ pub struct Plan {
     pub jobs: Vec<Job>,
     /// Whether paths are kept.
     pub keep_paths: bool,
-    /// What there is to say about the worlds: which are left out, and what their files hide.
+    /// Notes on the worlds: those that are left out, and warnings about their files.
     pub notes: Vec<String>,
 }
 
 impl Plan {
-    /// Finds all runs, and what is wrong with any of them.
+    /// Finds and checks all runs of a campaign.
     ///
     /// # Errors
-    /// If anything is wrong.
+    /// If anything is wrong with the campaign or a run.
     pub fn new(campaign: &Campaign) -> Result<Self> {
         check_lists(campaign)?;
         let (mut cases, mut jobs, mut notes) = (Vec::new(), Vec::new(), Vec::new());
@@ -131,14 +131,14 @@ impl Plan {
         Ok(Self { manifest, cases, jobs, keep_paths: campaign.keep_paths, notes })
     }
 
-    /// How many runs fit into the memory together, at least one.
+    /// Returns the number of runs that fit into the memory together; at least one.
     ///
     /// # Errors
     /// If a grid is impossible.
     pub fn runs_at_once(&self) -> Result<NonZeroUsize> {
         let fit = |case: &Case| {
             let mut config = case.config.clone();
-            // The strategy that takes most.
+            // The strategy that takes the most memory.
             config.planner.strategy = Strategy::Ig;
             let grid = case.world.grid(config.resolution).map_err(LabError::from)?;
             Ok(memory::runs_at_once(&grid, &config)?)
@@ -147,10 +147,10 @@ impl Plan {
         Ok(fits.into_iter().min().and_then(NonZeroUsize::new).unwrap_or(NonZeroUsize::MIN))
     }
 
-    /// A run as an experiment.
+    /// Returns a run as an experiment.
     ///
     /// # Errors
-    /// If it is impossible.
+    /// If the run is impossible.
     pub fn experiment(&self, job: &Job) -> Result<Experiment> {
         let (case, key) = (&self.cases[job.case], &job.planned.key);
         let mission = case.mission(job.strategy, case.starts[key.start])?;
@@ -158,7 +158,7 @@ impl Plan {
     }
 }
 
-/// What can be seen without opening any other file.
+/// Checks the campaign as far as this needs no other file.
 fn check_lists(campaign: &Campaign) -> Result<()> {
     let Campaign { worlds, settings, seeds, .. } = campaign;
     if !(1..=MOST_RUNS).contains(&seeds.count) {
@@ -193,7 +193,7 @@ fn check_lists(campaign: &Campaign) -> Result<()> {
     Ok(())
 }
 
-/// What a setting says must have a meaning.
+/// Checks that the limits and overrides of a setting have a meaning.
 fn check_setting(setting: &Setting) -> Result<()> {
     let Setting { name, max_scans, overrides, .. } = setting;
     if *max_scans == Some(0) {
@@ -212,7 +212,7 @@ fn check_setting(setting: &Setting) -> Result<()> {
     Ok(())
 }
 
-/// Counts the runs before any of them is thought of.
+/// Checks the number of runs before any of them is planned.
 fn check_count(campaign: &Campaign) -> Result<()> {
     let there = campaign.worlds.iter().filter(|world| !world.is_left_out());
     let of_world = |world: &NamedWorld| {
@@ -234,7 +234,7 @@ fn sum(mut counts: impl Iterator<Item = Option<usize>>) -> Option<usize> {
     counts.try_fold(0usize, |sum, count| sum.checked_add(count?))
 }
 
-/// Names must be there, fit into a table, and differ.
+/// Checks that there are names, that they fit into a table, and that they differ.
 fn names<'a>(list: &'static str, names: impl IntoIterator<Item = &'a String>) -> Result<()> {
     let names: Vec<&String> = names.into_iter().collect();
     let good = |name: &&&String| {
@@ -246,7 +246,7 @@ fn names<'a>(list: &'static str, names: impl IntoIterator<Item = &'a String>) ->
     unique(list, names.into_iter().cloned())
 }
 
-/// A list must have entries, each once.
+/// Checks that a list has entries, each once.
 fn unique(list: &'static str, entries: impl Iterator<Item = String>) -> Result<()> {
     let mut entries: Vec<String> = entries.collect();
     if entries.is_empty() {
@@ -288,7 +288,7 @@ impl Source {
         if moves.iter().any(|v| v.abs() > 0.0) {
             return Err(moved(Fault::MapMoved));
         }
-        // What is no map of map_server is refused when the world is made of it.
+        // A file that is no map of map_server is refused when the world is made of it.
         let digest = if world.is_map() {
             let map = files::map(file)?;
             notes.extend(files::remarks(file, &map).warnings);
@@ -327,7 +327,7 @@ impl Source {
     }
 }
 
-/// The cells of a map, and where they are, say all that its two files do.
+/// The hash of a map's cells and their place, which are all the content of the map's two files.
 fn map_digest(map: &MapServerMap) -> Digest {
     let (grid, low, pose) = (&map.grid, map.grid.lower_left(), &map.world_from_map);
     let cells: Vec<u8> = map.solid().values().iter().map(|solid| u8::from(*solid)).collect();
@@ -344,7 +344,7 @@ impl Case {
         Ok(files::mission(world, config, Some(start), self.limits)?)
     }
 
-    /// Finds what is wrong with any run: a start depends on no strategy.
+    /// Checks all runs; whether a start is good does not depend on the strategy.
     fn check(&self, strategies: &[Strategy]) -> Result<()> {
         for start in &self.starts {
             self.mission(strategies[0], *start)?;
@@ -352,7 +352,7 @@ impl Case {
         strategies.iter().try_for_each(|s| self.mission(*s, self.starts[0]).map(|_| ()))
     }
 
-    /// The hash of all that a run is a function of but the program and its seed.
+    /// The hash of everything that a run is a function of, except the program and the seed.
     fn digest(&self, strategy: Strategy, start: &Isometry2<f64>) -> Result<Digest> {
         let mut config = self.config.clone();
         config.planner.strategy = strategy;
@@ -394,7 +394,7 @@ fn add_jobs(
     Ok(())
 }
 
-/// The list of all runs. Until here a run's name says nothing of the program.
+/// The list of all runs. Up to here the name of a run does not depend on the program.
 fn manifest(campaign: &Campaign, jobs: &[Job]) -> Result<Manifest> {
     let mut seen: BTreeMap<&str, &RunKey> = BTreeMap::new();
     for Job { planned, .. } in jobs {

@@ -1,4 +1,4 @@
-//! Running what is missing, in parallel.
+//! Running the missing runs of a campaign in parallel.
 
 use crate::error::{CampaignError, Result};
 use crate::execute::execute;
@@ -14,54 +14,54 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// How a campaign is run.
+/// Options for running a campaign.
 #[derive(Clone, Copy)]
 pub struct Options<'a> {
     /// The number of runs at the same time.
     pub jobs: NonZeroUsize,
-    /// Which runs.
+    /// The runs to do.
     pub shard: Shard,
     /// The folder of the campaign.
     pub out: &'a Path,
-    /// Whether it is to stop in good order.
+    /// Whether the campaign is to stop in good order.
     pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
-/// What is told while a campaign goes on.
+/// A report while a campaign goes on.
 #[derive(Debug)]
 pub enum Step {
-    /// How many runs, of how many, are recorded already.
+    /// The campaign begins.
     Begin {
-        /// The runs that are recorded.
+        /// The number of runs of the shard that are recorded already.
         recorded: usize,
-        /// All runs.
+        /// The number of runs of the shard.
         of: usize,
     },
-    /// Something to know.
+    /// A note to the user.
     Note(String),
-    /// A scan was made, this far after the one before in its run \[m\].
+    /// A run took a scan.
     Scan {
-        /// How far it is from the scan before \[m\].
+        /// Length of the path since the scan before in this run \[m\].
         metres: f64,
     },
     /// A run is done and recorded.
     Done,
 }
 
-/// Finds what is wrong with a campaign, or with its folder, before anything is run or written.
+/// Checks a campaign and its folder, before anything is run or written.
 ///
 /// # Errors
-/// If anything is.
+/// If anything is wrong with the campaign or the folder.
 pub fn check(campaign: &Campaign, out: &Path) -> Result<()> {
     Folder::check(out, &Plan::new(campaign)?.manifest)
 }
 
-/// Runs what is not recorded yet, writes the tables, and returns all recorded runs of the
-/// shard, in the order of the campaign. After Ctrl-C these are not all.
+/// Does the runs of the shard that are not recorded yet, writes the tables, and returns all recorded runs
+/// of the shard, in the order of the campaign. If `stop` ends this early, runs are missing.
 ///
 /// # Errors
-/// If anything is wrong with the campaign or the folder: then nothing was run. If a result
-/// cannot be written: what is done is intact.
+/// If anything is wrong with the campaign or the folder; then nothing was run. If a result cannot be
+/// written; then the recorded runs are intact.
 pub fn run(
     campaign: &Campaign,
     options: &Options<'_>,
@@ -71,7 +71,7 @@ pub fn run(
     let at_once = plan.runs_at_once()?;
     if at_once < options.jobs {
         let note =
-            format!("as much memory as --memory allows is enough for {at_once} runs at a time");
+            format!("the memory that --memory allows is enough for {at_once} runs at a time");
         tell(&Step::Note(note));
     }
     let folder = Folder::open(options.out, &plan.manifest)?;
@@ -121,7 +121,7 @@ fn missing(recorded: &[Recorded], shard: Shard, tell: &(dyn Fn(&Step) + Sync)) -
     (0..recorded.len()).filter(|index| shard.has(*index)).filter(is_missing).collect()
 }
 
-/// Each worker takes the next run and does all of it by itself.
+/// Does the jobs; each worker takes the next run and does all of it by itself.
 fn work(
     plan: &Plan,
     jobs: &[&Job],

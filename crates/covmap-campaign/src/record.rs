@@ -1,35 +1,35 @@
-//! What is recorded of a run.
+//! The record of a run.
 
 use covmap_lab::Summary;
 use indexmap::IndexMap;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Which run of a campaign.
+/// Key of a run in a campaign.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunKey {
-    /// The name of the world.
+    /// Name of the world.
     pub world: String,
-    /// The name of the setting.
+    /// Name of the setting.
     pub setting: String,
-    /// The strategy as in Fig. 7.
+    /// Spelling of the strategy, such as `IG_CL:0.3`.
     pub strategy: String,
-    /// Which start in the world, from 0.
+    /// Number of the start in the world, counted from 0.
     pub start: usize,
     /// Seed of the noise.
     pub seed: u64,
 }
 
-/// A recorded run. All but the times is a function of the campaign and the program.
+/// Record of a run. Everything but the times is a function of the campaign and the program.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RunRecord {
-    /// Which.
+    /// Key of the run.
     pub key: RunKey,
-    /// What came out, by name, in the order of the columns of `runs.csv`.
+    /// Results by name, in the order of the columns of `runs.csv`.
     pub values: IndexMap<String, Value>,
-    /// How long it took \[s\], by name.
+    /// Times by name \[s\].
     pub times: IndexMap<String, f64>,
 }
 
@@ -44,8 +44,8 @@ pub enum Value {
 }
 
 impl RunRecord {
-    /// Whether it ended before all was explored, as at the most scans that its setting allows: to
-    /// the end it would have taken more scans and a longer path.
+    /// Whether the run ended before everything was explored, such as at the largest number of scans of its
+    /// setting: to the end it would have taken more scans and a longer path.
     pub fn is_cut_short(&self) -> bool {
         matches!(self.values.get("ending"), Some(Value::Text(ending)) if ending != "Explored")
     }
@@ -61,18 +61,18 @@ impl fmt::Display for RunKey {
 impl fmt::Display for Value {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            // Rust prints as many digits as bring the number back.
+            // Rust prints the digits that bring the number back.
             Self::Number(number) => write!(f, "{number}"),
             Self::Text(text) => write!(f, "{text}"),
         }
     }
 }
 
-/// What the key says already, the time, and what not every world has.
+/// Fields that are no values: those of the key, the time, and those that not every world has.
 const NOT_VALUES: [&str; 6] =
     ["world", "strategy", "seed", "seconds", "wall_recall_rough", "wall_recall_smooth"];
 
-/// All numbers of a summary by their names; those of a group as `group.name`.
+/// All values of a summary by their names; those of a group as `group.name`.
 pub(crate) fn values(summary: &Summary) -> serde_json::Result<IndexMap<String, Value>> {
     let text = serde_json::to_string(summary)?;
     let fields: IndexMap<String, serde_json::Value> = serde_json::from_str(&text)?;

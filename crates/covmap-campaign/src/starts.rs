@@ -1,4 +1,4 @@
-//! Places to start from.
+//! The starts of a campaign.
 
 use crate::error::StartsFault;
 use crate::file::Starts;
@@ -7,15 +7,15 @@ use covmap_lab::{Config, drawn_starts};
 use covmap_world::World;
 use nalgebra::{Isometry2, Vector2};
 
-/// The most starts that are drawn.
+/// Largest number of starts that are drawn.
 const MOST: usize = 1000;
-/// Starts are drawn among the centres of cells of this side \[m\], whatever the map's are.
+/// Side of the cells whose centres starts are drawn from \[m\], whatever the cells of the map.
 const SPACING: f64 = 0.1;
-/// So much room there is around a robot at a start that is drawn \[m\].
+/// Room around a robot at a drawn start \[m\].
 const ROOM: f64 = 0.15;
 
 impl Starts {
-    /// How many there are; of more than can be drawn, [`Starts::poses`] says so.
+    /// Returns the number of starts. [`Starts::poses`] reports a number that is too large to draw.
     pub fn count(&self) -> usize {
         match self {
             Self::Given => 1,
@@ -24,10 +24,9 @@ impl Starts {
         }
     }
 
-    /// The poses, `world_from_robot`.
+    /// Returns the poses, `world_from_robot`.
     ///
-    /// Drawn are those that can be reached from the start that the world gives, or from its
-    /// roomiest place.
+    /// Drawn starts can be reached from the start that the world gives, or from its roomiest place.
     pub fn poses(
         &self,
         world: &World,
@@ -56,7 +55,7 @@ impl Starts {
     }
 }
 
-/// The world's own start, or the one that `explore` takes on cells of a side \[m\].
+/// The world's own start, or the one that `explore` takes on cells with the side `resolution` \[m\].
 fn given(world: &World, radius: f64, resolution: f64) -> Result<Isometry2<f64>, StartsFault> {
     if let Some(start) = world.given_start() {
         return Ok(start);

@@ -1,7 +1,7 @@
-//! What a campaign came to, as tables.
+//! The results of a campaign as tables.
 //!
-//! The tables of a campaign of which runs are missing say so in their names, `runs-8-of-12.csv`, so
-//! that nobody takes them for the result.
+//! If runs of a campaign are missing, the names of its tables say so, as in `runs-8-of-12.csv`: they are
+//! not the result of the campaign.
 
 use crate::parameters::{PARAMETERS, parameters};
 use crate::record::{RunRecord, Value};
@@ -17,10 +17,10 @@ const RUNS: &str = "runs";
 const TIMINGS: &str = "timings";
 const SUMMARY: &str = "summary";
 
-/// Writes the tables `runs`, `timings` and `summary` of the runs that are recorded, out of how many, and
-/// removes those of another number.
+/// Writes the tables `runs`, `timings` and `summary` of the recorded runs, out of `of` runs, and removes
+/// the tables of another number of runs.
 ///
-/// The first and the last are a function of the campaign and the program; the times are not.
+/// `runs` and `summary` are a function of the campaign and the program; `timings` is not.
 pub(crate) fn write<'a>(
     dir: &Path,
     metrics: &[String],
@@ -69,7 +69,7 @@ pub(crate) fn write<'a>(
     csv::write(&summary, |out| out.write_all(rows.as_bytes()))
 }
 
-/// Removes the tables, so that none is there that does not tell of what is.
+/// Removes the tables, as they will not fit the recorded runs any longer.
 pub(crate) fn remove(dir: &Path) -> Result<(), FileError> {
     remove_but(dir, &[])
 }
@@ -86,7 +86,7 @@ fn remove_but(dir: &Path, kept: &[String]) -> Result<(), FileError> {
     Ok(())
 }
 
-/// Whether a file is called as one of ours: `runs.csv` or `runs-8-of-12.csv`.
+/// Whether a name is that of a table, such as `runs.csv` or `runs-8-of-12.csv`.
 fn is_table(name: &str) -> bool {
     let Some(name) = name.strip_suffix(".csv") else { return false };
     let is_number = |text: &str| !text.is_empty() && text.bytes().all(|b| b.is_ascii_digit());
@@ -105,14 +105,14 @@ fn key(record: &RunRecord) -> String {
     format!("{},{},{},{}", names.join(","), key.start, key.seed, numbers(&key.strategy))
 }
 
-/// The parameters of a strategy that is named as in Fig. 7.
+/// The parameters of a strategy, by its spelling.
 fn numbers(strategy: &str) -> String {
     let strategy = strategy.parse::<Strategy>();
     strategy.map_or_else(|_| Default::default(), |strategy| parameters(&strategy)).join(",")
 }
 
 /// Mean, standard deviation and 95 % interval of each metric over starts and seeds, in the
-/// order of the campaign; with how many of these runs were cut short.
+/// order of the campaign, with the number of these runs that were cut short.
 fn summarised(metrics: &[String], records: &[&RunRecord]) -> String {
     let mut order: Vec<[&str; 3]> = Vec::new();
     let mut groups: BTreeMap<[&str; 3], Vec<&RunRecord>> = BTreeMap::new();
@@ -150,8 +150,8 @@ fn summarised(metrics: &[String], records: &[&RunRecord]) -> String {
     table
 }
 
-/// A number to nine digits: more than that of an interval depends on how the quantile of
-/// Student's distribution is approximated.
+/// A number to nine digits: further digits of an interval depend on the approximation of the quantile of
+/// Student's distribution.
 fn digits(value: f64) -> String {
     format!("{value:.8e}").parse::<f64>().map_or_else(|_| value.to_string(), |v| v.to_string())
 }

@@ -1,5 +1,5 @@
-//! Which program this is.
+//! The version of the program.
 
-/// The version of Cargo and the commit, and a hash of the sources where they differ from it
-/// or there is none. Results of different versions are never mixed; `--version` prints it.
+/// Version of Cargo and the commit; also a hash of the sources if they differ from the commit or there
+/// is none. Results of different versions are never mixed; `--version` prints the version.
 pub const VERSION: &str = env!("COVMAP_VERSION");

@@ -1,4 +1,4 @@
-//! `beside`: runs of `explore` side by side, and what their scans and metres bought.
+//! `beside`: runs of `explore` side by side, with the accuracy that their scans and metres bought.
 
 use crate::arguments::Beside;
 use crate::terminal::say;
@@ -12,7 +12,7 @@ use serde::Deserialize;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// What is read of a `summary.json`.
+/// The keys of a `summary.json` that the table needs.
 #[derive(Deserialize)]
 struct Summary {
     world: String,
@@ -69,13 +69,13 @@ impl Row {
         Ok(Self { name: name.into_owned(), summary: read_json(summary)? })
     }
 
-    /// The class mean of the log-likelihood \[nats\]; `None` if nothing was measured.
+    /// Returns the class mean of the log-likelihood \[nats\]; `None` if nothing was measured.
     fn class_mean(&self) -> Option<f64> {
         let measured = &self.summary.measured;
         (measured.all.cells > 0).then(|| Weighting::Classes.objective(measured))
     }
 
-    /// The share of the first layer of walls that is found; `None` if there is none.
+    /// Returns the share of the first layer of walls that is found; `None` if there is none.
     fn walls_found(&self) -> Option<f64> {
         let walls = &self.summary.measured.solid;
         (walls.cells > 0).then_some(walls.found)
@@ -102,7 +102,8 @@ impl Row {
         ]
     }
 
-    /// Runs that differ in how often COUNT scans are one series.
+    /// Returns the name of the run's series; COUNT strategies are one series, whatever their number
+    /// of scans.
     fn series(&self) -> String {
         let Summary { strategy, .. } = &self.summary;
         let counts = strategy.starts_with("COUNT:");
@@ -110,7 +111,7 @@ impl Row {
     }
 }
 
-/// The table for the terminal: columns as wide as their longest field.
+/// Returns the table for the terminal, with columns as wide as their longest field.
 fn aligned(rows: &[Vec<String>]) -> Vec<String> {
     let header: Vec<String> = COLUMNS.iter().map(ToString::to_string).collect();
     let all: Vec<&Vec<String>> = std::iter::once(&header).chain(rows).collect();
@@ -129,7 +130,7 @@ fn figure(rows: &[Row]) -> Figure {
         let of_x = |label: &str, x: &dyn Fn(&Row) -> f64| Chart {
             title: title.into(),
             subtitle: String::new(),
-            // Strategies differ by factors.
+            // The scans and paths of strategies differ by factors.
             x: ChartAxis { logarithmic: true, ..ChartAxis::new(label) },
             y: ChartAxis::new(y),
             series: series(rows, |row| Some((x(row), of(row)?))),
@@ -153,7 +154,7 @@ fn figure(rows: &[Row]) -> Figure {
     }
 }
 
-/// A line for each strategy, in the order in which they are first named.
+/// Returns a line for each strategy, in the order of first appearance.
 fn series(rows: &[Row], point: impl Fn(&Row) -> Option<(f64, f64)>) -> Vec<Series> {
     let mut all: Vec<Series> = Vec::new();
     for row in rows {

@@ -1,4 +1,4 @@
-//! `campaign` and `collect`: runs what a file says, and joins what several machines did.
+//! `campaign` and `collect`: run the campaign of a file, and merge the folders of several machines.
 
 use crate::arguments::{Campaign as Arguments, Collect};
 use crate::terminal::interrupt::{self, Interrupt};
@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     if interrupt.done() {
         let (done, all, name) = (records.len(), all.into_inner(), &campaign.name);
         say::note(format!(
-            "interrupted; {done} of {all} runs of {name} are recorded, and begun again it goes on"
+            "interrupted; {done} of {all} runs of {name} are recorded; the same command continues"
         ));
         return Ok(ExitCode::from(interrupt::EXIT_CODE));
     }
@@ -51,7 +51,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// `out/fig7` for `configs/fig7.ron`.
+/// Returns the default folder: `out/fig7` for `configs/fig7.ron`.
 fn default_folder(file: &Path) -> PathBuf {
     Path::new("out").join(file.file_stem().unwrap_or_default())
 }

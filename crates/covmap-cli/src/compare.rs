@@ -34,17 +34,17 @@ const PAPER: [Parameter; 7] = [
     Parameter::SigmaIn,
 ];
 
-/// Fitted on some examples, checked on others.
+/// The comparison in one direction: fitted on some examples, checked on others.
 #[derive(Serialize)]
 struct Direction {
     fitted_on: Vec<String>,
     checked_on: Vec<String>,
-    /// How each contender was tuned.
+    /// The tuned contenders.
     contenders: Vec<Contender>,
     rows: Vec<Row>,
 }
 
-/// A method before it is tuned.
+/// A method before its tuning.
 struct Entry {
     name: String,
     method: Method,
@@ -66,7 +66,7 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     let mut directions = Vec::new();
     for (training, test) in [(&a, &b), (&b, &a)] {
         directions.push(direction(file, config, (training, test), &terminal)?);
-        // What was cut short is no comparison.
+        // An interrupted comparison has no results.
         if interrupt.done() {
             return Ok(ExitCode::from(interrupt::EXIT_CODE));
         }
@@ -82,7 +82,7 @@ pub(crate) fn run(arguments: &Fit) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// What is compared, the reference first: the update of the configuration.
+/// Returns the methods to compare. The reference comes first: the update of the configuration.
 fn entries(file: &FitFile, config: &Config, training: &[Example]) -> Vec<Entry> {
     let with = |update: Update| Method { model: config.model.clone(), update };
     let coverage = |name: &str, model: &ModelParameters, axes: &[Axis]| Entry {
@@ -129,7 +129,7 @@ fn in_words(update: &covmap_model::Update) -> &'static str {
     }
 }
 
-/// The same model with the other update, as it was fitted for the default.
+/// Returns the same model with the other update, with the parameters fitted for the default.
 fn the_other(model: &ModelParameters) -> ModelParameters {
     let other = match model.update {
         covmap_model::Update::Product(_) => ModelParameters::b21r(),

@@ -1,11 +1,11 @@
-//! `completions`: what a shell offers after `covmap`.
+//! `completions`: the completions of a shell for `covmap`.
 
 use crate::arguments::{Command, Completions};
 use anyhow::Result;
 use clap::{CommandFactory, Parser};
 use std::process::ExitCode;
 
-/// The program as a shell knows it.
+/// The program as a shell sees it.
 #[derive(Parser)]
 #[command(name = "covmap")]
 struct Covmap {

@@ -1,4 +1,4 @@
-//! `explain`: why a decision was taken.
+//! `explain`: the reasons of a decision.
 
 use crate::about::about;
 use crate::arguments::Explain;
@@ -59,12 +59,12 @@ fn facts(moment: &Moment) -> Vec<String> {
     }
     if decision.towards_ground {
         facts.push(
-            "no scan is worth its while: this one looks at what keeps it off more ground".into(),
+            "no scan is worth its cost: this one looks at the cells that keep the robot off more ground".into(),
         );
     }
     if !decision.passage.is_empty() {
         facts.push(format!(
-            "nothing is open in reach: it tries a passage of {} cells that look blocked",
+            "nothing is open in reach: the robot tries a passage of {} cells that look blocked",
             decision.passage.len()
         ));
     }
@@ -81,7 +81,7 @@ fn negative(candidates: &[CandidateRecord]) -> usize {
     candidates.iter().filter(|c| c.gain < 0.0).count()
 }
 
-/// The five best, best first.
+/// Returns the table of the five best candidates, the best first.
 fn table(moment: &Moment) -> Vec<String> {
     let heading = format!(
         "{:>4} {:>8} {:>8} {:>11} {:>8} {:>10} {:>8} {:>10}",
@@ -104,7 +104,7 @@ fn table(moment: &Moment) -> Vec<String> {
     std::iter::once(heading).chain(moment.decision.best.iter().enumerate().map(row)).collect()
 }
 
-/// What made the first the best.
+/// Explains in words why the first candidate is the best.
 fn reason(moment: &Moment) -> String {
     let Some(best) = moment.decision.best.first() else { return "nothing to choose".into() };
     let CandidateRecord { gain, cost, gain_term, cost_term, score, .. } = best;

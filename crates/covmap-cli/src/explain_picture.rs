@@ -6,15 +6,15 @@ use covmap_lab::Moment;
 use covmap_lab::results::certain_coverage;
 use nalgebra::Point2;
 
-/// How much of the map is seen through the gains.
+/// The opacity of the gains over the map.
 const OPACITY: f64 = 0.9;
-/// The lowest gain stands here on the scale of colours: black are walls.
+/// The place of the lowest gain on the scale of colours; black is for walls.
 const LOWEST: f64 = 0.2;
-/// The number of cells that are shown around what is known.
+/// The margin around the known cells \[cells\].
 const MARGIN: i32 = 3;
 const BEST: Rgb = Rgb(30, 160, 190);
 
-/// E\[I\] over the candidates, the five best, and the way to the one that was chosen.
+/// Draws E\[I\] over the candidates, the five best, and the way to the chosen one.
 pub(crate) fn draw(moment: &Moment, (world, step): (&str, usize), reason: &str) -> Picture {
     let Moment { mission, map, trajectory, scans, from, decision, candidates } = moment;
     let grid = mission.grid;
@@ -61,7 +61,7 @@ pub(crate) fn draw(moment: &Moment, (world, step): (&str, usize), reason: &str) 
     picture
 }
 
-/// The part of the map's grid in which anything is known, with a margin.
+/// Returns the part of the map's grid with known cells, with a margin.
 fn around_known(map: &CoverageMap) -> Grid {
     let grid = *map.grid();
     let mut known = grid.cells().filter(|cell| map.is_known(*cell));
@@ -79,7 +79,7 @@ fn around_known(map: &CoverageMap) -> Grid {
     Grid::new(grid.lower_corner(low), grid.resolution(), width, height).unwrap_or(grid)
 }
 
-/// The least and the largest, and never the same.
+/// Returns the least and the largest value, which never are the same.
 fn range(values: impl Iterator<Item = f64>) -> (f64, f64) {
     let (low, high) =
         values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));

@@ -1,4 +1,4 @@
-//! `explore`: a world is explored to its end.
+//! `explore`: the exploration of a world to its end.
 
 use crate::arguments::Explore;
 use crate::built_in;
@@ -54,7 +54,7 @@ pub(crate) fn run(arguments: &Explore) -> Result<ExitCode> {
     Ok(ExitCode::from(exit_code(run.ending)))
 }
 
-/// What is to be done, what there is to say about the world, and what tells that from others.
+/// Returns the task, the remarks about the world, and the bytes that identify the world.
 fn task(arguments: &Explore) -> Result<(Task, Remarks, Vec<u8>)> {
     let (config, name) = files::config(arguments.config.as_deref(), built_in::B21R)?;
     let config = arguments.settings.apply(overridden(config, arguments))?;
@@ -72,7 +72,7 @@ fn task(arguments: &Explore) -> Result<(Task, Remarks, Vec<u8>)> {
     Ok((Task { world, experiment, thresholds, reader }, remarks, bytes))
 }
 
-/// The configuration with what was typed instead of what the file says.
+/// Returns the configuration with the arguments in place of the file's values.
 fn overridden(mut config: Config, arguments: &Explore) -> Config {
     if let Some(strategy) = arguments.strategy {
         config.planner.strategy = strategy;
@@ -86,7 +86,7 @@ fn overridden(mut config: Config, arguments: &Explore) -> Config {
     config
 }
 
-/// The folder that was typed, or one whose name tells all that differs from the default.
+/// Returns the folder of `--out`, or one whose name tells all differences from the default.
 fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
     let Explore { config, resolution, while_driving, max_scans, start, out, .. } = arguments;
     if let Some(out) = out {
@@ -116,7 +116,7 @@ fn folder_name(arguments: &Explore, task: &Task) -> Result<PathBuf> {
     ]))
 }
 
-/// Which run it is: what the trace begins with, and the world.
+/// Returns the identity of the run: the header of the trace, and the world.
 fn run_line(task: &Task, world_bytes: Vec<u8>, read_out: Option<&Path>) -> Result<String> {
     let Task { world, experiment, .. } = task;
     let Experiment { mission, seed, .. } = experiment;
@@ -128,7 +128,7 @@ fn run_line(task: &Task, world_bytes: Vec<u8>, read_out: Option<&Path>) -> Resul
     Ok(output::run_line(&words, digest))
 }
 
-/// Explores, with all that hangs on it.
+/// Explores the world, with trace, progress and interrupts.
 fn watch(
     task: &Task,
     trace: &mut TraceWriter,
@@ -157,11 +157,11 @@ fn exit_code(ending: Ending) -> u8 {
     }
 }
 
-/// What the numbers of the measured cells are.
+/// The legend of the line of the measured cells.
 const MEASURED_LEGEND: &str = "  (mean log-likelihood of classes alike; of each class the log-likelihood [nats] and \
                                the error of the mode)";
 
-/// What the words of the report mean, for who does not know them.
+/// The legend of the report.
 const LEGEND: &str = "  (exhausted: still uncertain, and measuring helps no longer; wall recall: the \
                       share of the walls in sight that the map has; docs/guide.md#reading-the-summary)";
 
@@ -208,7 +208,7 @@ fn report(written: &Written, counts: &MapCounts, folder: &Path) {
     say::line(format!("  {}", folder.display()));
 }
 
-/// What is cut off, and what cuts it off.
+/// Describes the area that is cut off, and the obstacles in the way.
 fn cut_off(cut_off: &CutOff, resolution: f64) -> String {
     let area = cut_off.cells as f64 * resolution * resolution;
     let bars = [

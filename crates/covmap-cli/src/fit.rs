@@ -1,4 +1,4 @@
-//! `fit`: the sensor model is fitted to the truth.
+//! `fit`: a fit of the sensor model to the truth.
 
 use crate::arguments::Fit;
 use crate::fit_charts;
@@ -66,7 +66,7 @@ fn write(folder: &OutputFolder, config: &Config, report: &Report<'_>) -> Result<
     let bins = report.after.bins;
     let maps = [("as it is", &report.reliability), ("read out", &report.reliability_read_out)];
     reliability::figure(&report.checked_on(), &maps, bins).save(svg, png)?;
-    // Last: whoever finds it finds all the others.
+    // The last file: its presence means that all others are complete.
     write_json(folder.path("fit.json"), report)?;
     Ok(())
 }

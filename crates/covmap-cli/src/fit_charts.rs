@@ -1,10 +1,11 @@
-//! The charts of a fit: the way of the search, and the likelihood along each axis.
+//! The charts of a fit: the course of the search, and the likelihood along each axis.
 
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 use covmap_fit::{Evaluation, Parameter, Profile};
 use covmap_model::ModelParameters;
 
-/// The objective of every evaluation, and the best so far, search by search.
+/// Returns the chart of the objective of every evaluation, and of the best so far, search by
+/// search.
 pub(crate) fn search(path: &[Evaluation]) -> Chart {
     let mut tried = Series { name: "tried".into(), marks: true, ..Series::default() };
     let mut best = Series { name: "best of its search".into(), line: true, ..Series::default() };
@@ -21,7 +22,7 @@ pub(crate) fn search(path: &[Evaluation]) -> Chart {
             best.points.push(ChartPoint::new(x, highest));
         }
     }
-    // The far worse ones at the beginning of a search would press the others together.
+    // The worst values at the beginning of a search would squeeze the others together.
     let mut values: Vec<f64> = tried.points.iter().map(|point| point.y).collect();
     values.sort_by(f64::total_cmp);
     let from = values.get(values.len() / 10).copied();
@@ -34,7 +35,7 @@ pub(crate) fn search(path: &[Evaluation]) -> Chart {
     }
 }
 
-/// A panel for each free parameter.
+/// Returns a panel for each free parameter.
 pub(crate) fn profiles(profiles: &[Profile], fitted: &ModelParameters) -> Figure {
     let panel = |profile: &Profile| {
         let points = profile.points.iter();

@@ -1,4 +1,5 @@
-//! What a fit came to: how the maps explain the truth before, after, and through the read-out.
+//! The report of a fit: the likelihood of the truth by the maps before, after, and through the
+//! read-out.
 
 use crate::terminal::say;
 use anyhow::Result;
@@ -12,7 +13,7 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::path::Path;
 
-/// What is added to the words on a search that Ctrl-C ended.
+/// The remark on a search that Ctrl-C ended.
 pub(crate) const INTERRUPTED: &str = "; INTERRUPTED, the best that was found so far";
 
 /// The scored cells of a map: posterior and truth.
@@ -25,23 +26,24 @@ pub(crate) struct Maps<'a> {
     after: CoverageMap,
 }
 
-/// All that `fit.json` holds.
+/// The content of `fit.json`.
 #[derive(Serialize)]
 pub(crate) struct Report<'a> {
     pub(crate) file: &'a Path,
     pub(crate) seed: u64,
     pub(crate) weighting: Weighting,
-    /// Whether Ctrl-C ended the search before its time: what was found is the best so far.
+    /// Whether Ctrl-C ended the search early: the result is the best so far.
     pub(crate) interrupted: bool,
     pub(crate) training: Compared,
     pub(crate) held_out: Vec<Compared>,
-    /// Difference of the objective for each held-out example, after − before.
+    /// Differences of the objective on the held-out examples, after − before.
     pub(crate) held_out_difference: Option<Paired>,
-    /// The same, read out − after.
+    /// Differences of the objective on the held-out examples, read out − after.
     pub(crate) read_out_difference: Option<Paired>,
-    /// Of the fitted model on the held-out examples; on those of the training if there are none.
+    /// Reliability of the fitted model on the held-out examples; on the training examples if there
+    /// are none.
     pub(crate) reliability: Reliability,
-    /// The same through the read-out.
+    /// The same reliability through the read-out.
     pub(crate) reliability_read_out: Reliability,
     pub(crate) before: &'a ModelParameters,
     pub(crate) after: &'a ModelParameters,
@@ -51,7 +53,8 @@ pub(crate) struct Report<'a> {
     pub(crate) profiles: &'a [Profile],
 }
 
-/// One example, or all together: before and after the fit, and after it through the read-out.
+/// The scores of one example, or of all together: before and after the fit, and after it through
+/// the read-out.
 #[derive(Serialize)]
 pub(crate) struct Compared {
     pub(crate) name: String,
@@ -70,7 +73,7 @@ pub(crate) struct Paired {
 }
 
 impl<'a> Maps<'a> {
-    /// The maps of some examples with the parameters before and after a fit.
+    /// Builds the maps of some examples with the parameters before and after a fit.
     pub(crate) fn of(
         examples: &'a [Example],
         (before, after): (&ModelParameters, &ModelParameters),
@@ -90,7 +93,7 @@ impl<'a> Maps<'a> {
     }
 }
 
-/// The read-out that explains the truth of some examples best.
+/// Returns the read-out that best explains the truth of some examples.
 pub(crate) fn read_out(training: &[Maps<'_>], bins: usize, weighting: Weighting) -> ReadOut {
     let cells: Cells = training.iter().flat_map(Maps::after).collect();
     fit_read_out(&cells, bins, weighting)
@@ -134,7 +137,7 @@ impl<'a> Report<'a> {
         })
     }
 
-    /// What the reliability is measured on.
+    /// Describes the examples behind the reliability.
     pub(crate) fn checked_on(&self) -> String {
         match self.held_out.len() {
             0 => format!("training, {} cells", self.training.after.all.cells),
@@ -145,7 +148,7 @@ impl<'a> Report<'a> {
         }
     }
 
-    /// Where the fitted configuration comes from, in words.
+    /// Describes the origin of the fitted configuration.
     pub(crate) fn provenance(&self) -> String {
         let mean = |score: &ExampleScore| self.weighting.objective(score);
         let Compared { before, after, read_out, .. } = &self.training;
@@ -190,7 +193,8 @@ impl Compared {
 }
 
 impl Paired {
-    /// Of pairs of scores, the second less the first; `None` for fewer than two.
+    /// Returns the differences of pairs of scores, the second less the first; `None` for fewer than
+    /// two.
     fn of<'a>(
         pairs: impl Iterator<Item = (&'a ExampleScore, &'a ExampleScore)>,
         weighting: Weighting,
@@ -202,17 +206,17 @@ impl Paired {
     }
 }
 
-/// A number of examples, in words.
+/// Returns a number of examples, in words.
 fn of_examples(n: usize) -> String {
     format!("{n} {}", if n == 1 { "example" } else { "examples" })
 }
 
-/// What the columns of [`row`] are.
+/// The legend of the columns of [`row`].
 pub(crate) const COLUMNS: &str = "mean log-likelihood [nats], of classes alike and of each class, \
      with the mean error of the mode;\n  of partly covered cells the share of modes in between, and \
      of truths in the central 90 %; of walls\n  (the first layer of solid cells) the share found:";
 
-/// The figures of a score in one line.
+/// Returns the figures of a score in one line.
 pub(crate) fn row(name: &str, score: &ExampleScore) -> String {
     let of = |class: &covmap_fit::ClassScore| {
         if class.cells == 0 {
@@ -232,7 +236,7 @@ pub(crate) fn row(name: &str, score: &ExampleScore) -> String {
     )
 }
 
-/// Tells the user.
+/// Prints the report.
 pub(crate) fn tell(report: &Report<'_>, written: &Path) {
     say::line(COLUMNS);
     for Compared { name, before, after, read_out } in

@@ -1,8 +1,9 @@
-//! The program `covmap`: explores worlds, makes maps of logs, fits, compares, runs campaigns, and writes what
-//! came out.
+//! The program `covmap`: explores worlds, builds maps from logs, fits, compares, runs campaigns,
+//! and writes the results.
 //!
-//! [`run`] is the whole program, and [`run_with`] one with more commands, as `cargo xtask` is. What computes
-//! is in the other crates; here are arguments, files, the terminal, the clock and Ctrl-C.
+//! [`run`] is the whole program, and [`run_with`] a program with more commands, such as `cargo
+//! xtask`. The computations are in the other crates; this crate has the arguments, the files, the
+//! terminal, the clock and Ctrl-C.
 //!
 //! ```text
 //! cargo install --path crates/covmap-cli
@@ -46,17 +47,17 @@ use std::io::ErrorKind;
 use std::process::ExitCode;
 use terminal::say;
 
-/// What the program ends with after bad input; clap ends with the same.
+/// The exit code after bad input; clap uses the same.
 const BAD_INPUT: u8 = 2;
-/// What a shell says of a program that was ended by a closed pipe.
+/// The exit code that a shell reports for a program that a closed pipe ended.
 const CLOSED_PIPE: u8 = 141;
 
-/// Runs the program with what was typed after `name`, as which it calls itself.
+/// Runs the program with the command line; the program calls itself `name`.
 pub fn run(name: &str) -> ExitCode {
     run_with(name, Command::run)
 }
 
-/// Runs a program with commands of its own; `act` does what one says.
+/// Runs a program with commands of its own; `act` executes a command.
 pub fn run_with<C: Subcommand>(name: &str, act: impl FnOnce(C) -> Result<ExitCode>) -> ExitCode {
     let Arguments { command, memory } = match Arguments::typed(name) {
         Ok(arguments) => arguments,
@@ -70,10 +71,10 @@ pub fn run_with<C: Subcommand>(name: &str, act: impl FnOnce(C) -> Result<ExitCod
 }
 
 impl Command {
-    /// Does what was typed.
+    /// Executes the command.
     ///
     /// # Errors
-    /// In one sentence, which names the file if there is one.
+    /// One sentence, which names the file if there is one.
     pub fn run(self) -> Result<ExitCode> {
         match self {
             Self::Explore(arguments) => explore::run(&arguments),
@@ -94,11 +95,11 @@ impl Command {
     }
 }
 
-/// How the program ends, unless what it said could not be written.
+/// Returns the exit code, or another one if the output could not be written.
 fn ended(code: ExitCode) -> ExitCode {
     match say::finish() {
         Ok(()) => code,
-        // Nobody reads on, and that is known.
+        // The reader closed the pipe on purpose.
         Err(error) if error.kind() == ErrorKind::BrokenPipe => ExitCode::from(CLOSED_PIPE),
         Err(error) => {
             say::error(&anyhow!("the standard output cannot be written: {error}"));

@@ -1,4 +1,4 @@
-//! `log`: the scans of a run as a log of CARMEN.
+//! `log`: the scans of a run as a CARMEN log.
 
 use crate::about::about;
 use crate::arguments::Log;
@@ -28,8 +28,8 @@ pub(crate) fn run(arguments: &Log) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Writes the scans of a trace, one by one, and where the robot drove between them. Its last line
-/// may be cut short.
+/// Writes the scans of a trace, one by one, and the robot's way between them. The last line of the
+/// trace may be cut short.
 fn write(
     trace: &Path,
     (header, ring): (&TraceHeader, &SonarRing),
@@ -41,7 +41,7 @@ fn write(
     };
     let mut log = CarmenWriter::new(ring, file).map_err(fail)?;
     let mut path = RunPath::new(header);
-    // The first line is the header, which is no event.
+    // The first line is the header, which is not an event.
     for event in read_json_lines::<Event>(trace)?.skip(1) {
         let event = match event {
             Err(FileError::Truncated { .. }) => break,

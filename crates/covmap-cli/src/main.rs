@@ -1,4 +1,4 @@
-//! `covmap help` says what it can do.
+//! The program `covmap`; `covmap help` lists its commands.
 
 use std::process::ExitCode;
 

@@ -1,4 +1,4 @@
-//! `map`: the map of what a real robot recorded.
+//! `map`: the map of a real robot's log.
 
 use crate::about::about;
 use crate::arguments::{Map, SensorName};
@@ -29,8 +29,8 @@ use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A sensor's axis may pass the robot's centre at this distance, and sectors from the centre
-/// still describe it \[m\].
+/// The largest distance between a sensor's axis and the robot's centre with which sectors from the
+/// centre still describe the sensor \[m\].
 const OFF_CENTRE: f64 = 0.05;
 
 pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
@@ -75,7 +75,7 @@ pub(crate) fn run(arguments: &Map) -> Result<ExitCode> {
     Ok(if mapper.stopped { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
 }
 
-/// The configuration as its file has it.
+/// Returns the configuration as its file has it.
 fn named_config(arguments: &Map) -> Result<(Config, PathBuf), LabError> {
     let file = arguments.config.as_deref();
     match arguments.sensor {
@@ -108,7 +108,7 @@ fn log(arguments: &Map, config: &Config) -> Result<Log> {
 /// The rings of a log, each with its sensor model.
 type Models = Vec<(Arc<SonarRing>, SensorModel)>;
 
-/// The sensor models for the rings of a log, and what there is to remark about them.
+/// Returns the sensor models for the rings of a log, and a remark about them, if any.
 fn models(
     config: &Config,
     sensor: SensorName,
@@ -148,7 +148,7 @@ fn model(
     Ok((SensorModel::new(&parameters, ring, config.resolution)?, remark))
 }
 
-/// Whether a sensor's axis comes from the robot's centre.
+/// Returns whether a sensor's axis starts at the robot's centre.
 fn looks_outwards(beam: &Beam) -> bool {
     let place = beam.pose.rotation.inverse() * beam.pose.translation.vector;
     place.y.abs() <= OFF_CENTRE && place.x >= -OFF_CENTRE
@@ -161,7 +161,7 @@ fn sensor_name(sensor: SensorName) -> &'static str {
     }
 }
 
-/// The name of a log: its file's or folder's, without what says how it is stored.
+/// Returns the name of a log: that of its file or folder, without the endings of its format.
 fn log_name(log: &Path) -> String {
     let whole = log.canonicalize().unwrap_or_else(|_| log.to_owned());
     let name = whole.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -171,7 +171,7 @@ fn log_name(log: &Path) -> String {
     if short.is_empty() { "log".to_owned() } else { short.to_owned() }
 }
 
-/// The folder that was typed, or one whose name tells all that differs from the default.
+/// Returns the folder of `--out`, or one whose name tells all differences from the default.
 fn folder_name(arguments: &Map) -> Result<PathBuf> {
     let Map { config, poses, resolution, every, every_degrees, out, .. } = arguments;
     if let Some(out) = out {
@@ -192,7 +192,7 @@ fn folder_name(arguments: &Map) -> Result<PathBuf> {
     ]))
 }
 
-/// Which map it is: of what, and how.
+/// Returns the identity of the map: its log and its settings.
 fn run_line(arguments: &Map, config: &Config) -> Result<String> {
     let words = format!("map {}, {}", log_name(&arguments.log), sensor_name(arguments.sensor));
     let mut digest = output::log_digest(&arguments.log)?
@@ -235,7 +235,7 @@ fn summary(
     }
 }
 
-/// What of the log is not in the map.
+/// Describes the parts of the log that are not in the map.
 fn warning(skipped: &Skipped, mapper: &Mapper) -> Option<String> {
     let skipped = (!skipped.is_empty()).then(|| skipped.to_string());
     let stopped = mapper
@@ -245,7 +245,7 @@ fn warning(skipped: &Skipped, mapper: &Mapper) -> Option<String> {
     (!all.is_empty()).then(|| all.join("; "))
 }
 
-/// The share of the known cells that are not pinned with an entropy above .65 nats.
+/// Returns the share of the known, not pinned cells with an entropy above .65 nats.
 fn share_uncertain(map: &CoverageMap) -> f64 {
     let measured = map.grid().cells().filter(|cell| map.is_known(*cell) && !map.is_pinned(*cell));
     let (mut all, mut above) = (0usize, 0usize);
@@ -269,7 +269,7 @@ fn write(
     pictures.coverage().save(folder.path("coverage.png"))?;
     pictures.entropy().save(folder.path("entropy.png"))?;
     pictures.occupancy().save(folder.path("occupancy.png"))?;
-    // Last: whoever finds it finds all the others.
+    // The last file: its presence means that all others are complete.
     write_json(folder.path("summary.json"), summary)?;
     Ok(counts)
 }

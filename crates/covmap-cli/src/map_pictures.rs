@@ -1,4 +1,4 @@
-//! The pictures of the map of a log.
+//! The pictures of a log's map.
 
 use crate::map_summary::MapSummary;
 use covmap::CoverageMap;
@@ -7,12 +7,12 @@ use covmap_lab::Mapper;
 use covmap_lab::results::{draw_coverage, draw_entropy, draw_occupancy, draw_path};
 use nalgebra::Point2;
 
-/// All that the pictures show.
+/// The content of the pictures.
 pub(crate) struct MapPictures<'a> {
     pub(crate) mapper: &'a Mapper,
-    /// The map as it is read.
+    /// The map, after the read-out.
     pub(crate) map: &'a CoverageMap,
-    /// How that is, in words; may be empty.
+    /// The description of the read-out; may be empty.
     pub(crate) how: &'a str,
     pub(crate) summary: &'a MapSummary,
     /// ε: a cell with an entropy up to this does not fade \[nats\].

@@ -1,4 +1,4 @@
-//! What `map` says of a log and its map.
+//! The report of `map` on a log and its map.
 
 use crate::arguments::Map;
 use crate::map_summary::MapSummary;
@@ -10,10 +10,11 @@ use covmap_log::{Account, Readings, SensorAccount};
 use std::io::Write;
 use std::path::Path;
 
-/// The most sensors whose readings are told one by one; those of more are in a file.
+/// The largest number of sensors whose readings are printed one by one; a file has those of larger
+/// rings.
 const MOST_TOLD: usize = 32;
 
-/// What the map depends on, and what says so: a sentence each.
+/// Returns the numbers that the map depends on, each with its source, as sentences.
 pub(crate) fn taken_from(account: &Account) -> Vec<String> {
     let mut all = Vec::new();
     for sensor in &account.sensors {
@@ -26,7 +27,7 @@ pub(crate) fn taken_from(account: &Account) -> Vec<String> {
     all
 }
 
-/// Writes how many readings of each kind every sensor has.
+/// Writes the number of readings of each kind for every sensor.
 pub(crate) fn write_readings(path: &Path, survey: &LogOverview) -> Result<(), FileError> {
     csv::write(path, |out| {
         writeln!(out, "lines,sensor,echoes,no_echoes,missing,skipped")?;
@@ -41,7 +42,7 @@ pub(crate) fn write_readings(path: &Path, survey: &LogOverview) -> Result<(), Fi
     })
 }
 
-/// Tells the user.
+/// Prints the report.
 pub(crate) fn tell(
     arguments: &Map,
     summary: &MapSummary,
@@ -57,7 +58,7 @@ pub(crate) fn tell(
     sensors.iter().for_each(tell_readings);
     say::line(format!("  {:.1} m driven, {:.1} s", summary.path_length_m, summary.seconds));
     if *jumps > 0 {
-        say::line(format!("  {jumps} jumps, too far for their time: not taken for driven"));
+        say::line(format!("  {jumps} jumps, too far for their time: not counted as driven"));
     }
     say::line(format!(
         "  cells: {} known, {} unknown; entropy above 0.65 nats in {:.1} % of the measured",

@@ -5,36 +5,36 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 
-/// What `summary.json` holds: of the keys of an exploration those that apply.
+/// The content of `summary.json`: the keys of an exploration that apply.
 #[derive(Debug, Serialize)]
 pub(crate) struct MapSummary {
-    /// The log's name.
+    /// The name of the log.
     pub(crate) world: String,
     pub(crate) sensor: &'static str,
     /// r \[m\].
     pub(crate) resolution: f64,
-    /// Frames of the log: skipped, standing, or scans of the map.
+    /// The frames of the log: skipped, standing, or scans of the map.
     pub(crate) frames: usize,
     pub(crate) skipped: usize,
     pub(crate) standing: usize,
     pub(crate) scans: usize,
-    /// Places where the poses jump, so that nobody knows the way.
+    /// The number of jumps of the poses, over which the way is unknown.
     pub(crate) jumps: usize,
     pub(crate) path_length_m: f64,
     pub(crate) cells: CellCounts,
-    /// The share of the known cells that the body did not pin with an entropy above .65.
+    /// Share of the known cells, without those that the body pinned, with an entropy above .65.
     pub(crate) share_entropy_above_0_65: f64,
-    /// The read-out through which that is, if there was one.
+    /// The read-out behind this share, if any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) read_out: Option<PathBuf>,
     pub(crate) seconds: f64,
-    /// All readings of the log, by the lines that they stand in.
+    /// All readings of the log, by the tag of their lines.
     pub(crate) readings: BTreeMap<&'static str, Readings>,
-    /// What the map depends on, and what says so.
+    /// The numbers that the map depends on, with their sources.
     pub(crate) taken_from: Vec<String>,
-    /// What else there is to know of the log.
+    /// Further remarks about the log.
     pub(crate) remarks: Vec<String>,
-    /// What was lost of the log, in words.
+    /// The parts of the log that were lost, in words.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) warning: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! `model`: what the sensor model makes of one echo, Fig. 3.
+//! `model`: the answer of the sensor model to one echo, Fig. 3.
 
 use crate::arguments::Model;
 use crate::built_in;

@@ -1,31 +1,31 @@
-//! Names of folders and files, made of what was typed.
+//! Names of folders and files, made from the arguments.
 
 use std::path::{Path, PathBuf};
 
-/// A folder in `out/`, named by parts that are there.
+/// Returns a folder in `out/`, named by the parts that are present.
 pub(crate) fn named(parts: impl IntoIterator<Item = Option<String>>) -> PathBuf {
     let parts: Vec<String> = parts.into_iter().flatten().collect();
     Path::new("out").join(parts.join("-"))
 }
 
-/// What a file is called, for the name of a folder.
+/// Returns the name of a file without its extension, for the name of a folder.
 pub(crate) fn stem(file: &Path) -> String {
     let stem = file.file_stem().unwrap_or_default().to_string_lossy();
     plain(&stem)
 }
 
-/// A text with nothing in it that a file's name should not have.
+/// Returns a text without characters that do not suit the name of a file.
 pub(crate) fn plain(text: &str) -> String {
     let plain = |c: char| if c.is_alphanumeric() || "._-".contains(c) { c } else { '_' };
     text.chars().map(plain).collect()
 }
 
-/// A number for the name of a folder, if it is not the usual one.
+/// Returns a number for the name of a folder, unless it is the usual one.
 pub(crate) fn unlike(number: f64, usual: f64) -> Option<f64> {
     number.total_cmp(&usual).is_ne().then_some(number)
 }
 
-/// A number as it was typed, and not with what its computing added.
+/// Returns a number as the user typed it, without the rounding of computations.
 pub(crate) fn typed(number: f64) -> f64 {
     (number * 1e6).round() / 1e6
 }

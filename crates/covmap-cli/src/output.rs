@@ -1,4 +1,4 @@
-//! Where results go, and that nothing of the user's is lost there.
+//! The folders and files of results; no input of the user is lost there.
 
 use crate::arguments::{Fit, Force};
 use crate::names;
@@ -8,13 +8,12 @@ use covmap_io::{FileError, OutputFolder, Replace, shown};
 use covmap_lab::FitPlan;
 use std::path::Path;
 
-/// A run in words, and all that its results are a function of as a hash.
+/// Returns a run in words, with the hash of everything that determines its results.
 pub(crate) fn run_line(words: &str, digest: Digest) -> String {
     format!("{words}, {}", digest.finish())
 }
 
-/// Begins the folder of a run that reads `inputs`, which must not lie in a folder that is
-/// replaced.
+/// Begins the folder of a run that reads `inputs`. A folder with an input in it is refused.
 pub(crate) fn folder(
     out: &Path,
     run: &str,
@@ -31,8 +30,7 @@ pub(crate) fn folder(
     Ok(OutputFolder::create(out, run, force.replace())?)
 }
 
-/// Begins the folder of a command that reads a file for `fit`, and the configurations that it
-/// names.
+/// Begins the folder of a command that reads a file for `fit`, and the configurations named there.
 pub(crate) fn of_fit(command: &str, arguments: &Fit, plan: &FitPlan) -> Result<OutputFolder> {
     let Fit { file, out, force, .. } = arguments;
     let digest = Digest::default()
@@ -43,12 +41,13 @@ pub(crate) fn of_fit(command: &str, arguments: &Fit, plan: &FitPlan) -> Result<O
     folder(out, &run, *force, &[file, &plan.begin.file, &plan.explorer.file])
 }
 
-/// What may be replaced by a file of a command that reads `inputs`: never one of these.
+/// Returns the permission to replace a file by a command that reads `inputs`; an input is never
+/// replaced.
 pub(crate) fn replace(out: &Path, force: Force, inputs: &[&Path]) -> Result<Replace> {
     let out_file = out.canonicalize().unwrap_or_default();
     for input in inputs {
         let input_file = input.canonicalize().unwrap_or_else(|_| input.to_path_buf());
-        // A folder that is read is all of its files.
+        // A folder among the inputs stands for all of its files.
         if input_file == out_file || out_file.parent() == Some(&input_file) {
             bail!("{}: is an input of this command; name another file with --out", shown(out));
         }
@@ -56,7 +55,7 @@ pub(crate) fn replace(out: &Path, force: Force, inputs: &[&Path]) -> Result<Repl
     Ok(force.replace())
 }
 
-/// The first input that lies in a folder.
+/// Returns the first input that lies in a folder.
 fn inside<'a>(folder: &Path, inputs: &[&'a Path]) -> Option<&'a Path> {
     let folder = folder.canonicalize().ok()?;
     let is_inside =
@@ -64,7 +63,7 @@ fn inside<'a>(folder: &Path, inputs: &[&'a Path]) -> Option<&'a Path> {
     inputs.iter().find(is_inside).copied()
 }
 
-/// The hash of a log, or of the files that a folder has of one.
+/// Returns the hash of a log file, or of the files of a log's folder.
 pub(crate) fn log_digest(log: &Path) -> Result<Digest, FileError> {
     let parts = ["od.txt", "sonar.txt", "laser.txt"].map(|name| log.join(name));
     let files = if log.is_dir() { &parts[..] } else { &[log.to_owned()] };

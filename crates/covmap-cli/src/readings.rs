@@ -1,4 +1,4 @@
-//! `readings`: are the simulated sonars like those of a real robot?
+//! `readings`: a comparison of simulated sonars with those of a real robot.
 
 mod knobs;
 mod table;
@@ -35,15 +35,15 @@ use table::Table;
 
 /// Free space around the walls of a survey \[m\].
 const MARGIN: f64 = 1.0;
-/// What there is by the laser is the nearest of its echoes within this of a sonar's axis \[rad\]:
-/// 7.5°, whatever the cone of the simulated sonars.
+/// The truth of a reading is the nearest of the laser's echoes within this angle of the sonar's
+/// axis \[rad\]: 7.5°, whatever the cone of the simulated sonars.
 const CONE: f64 = 7.5 * std::f64::consts::PI / 180.0;
-/// The number of seeds whose noise makes the shares of the simulated readings.
+/// The number of seeds behind the shares of the simulated readings.
 const SEEDS: u64 = 4;
-/// Scans of sonar and laser whose times differ by no more are of the same frame \[s\].
+/// Scans of sonar and laser are of the same frame if their times differ by at most this \[s\].
 const SAME_TIME: f64 = 1e-6;
 
-/// A reading of a real sonar, and what there is by the laser.
+/// A reading of a real sonar, with the truth by the laser.
 struct Reading {
     sensor: usize,
     /// The nearest of the laser's echoes around the sensor's axis \[m\].
@@ -53,12 +53,12 @@ struct Reading {
 
 /// All readings of one scan.
 struct Frame {
-    /// In the world of the survey.
+    /// The robot's pose in the world of the survey.
     pose: Isometry2<f64>,
     readings: Vec<Reading>,
 }
 
-/// A log beside the world that its laser saw.
+/// A log, with the world that its laser saw.
 struct Recording {
     world: World,
     frames: Vec<Frame>,
@@ -111,7 +111,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(if interrupt.is_pressed() { interrupt::EXIT_CODE.into() } else { ExitCode::SUCCESS })
 }
 
-/// Which comparison it is: of what, and how.
+/// Returns the identity of the comparison: its inputs and its settings.
 fn run_line(arguments: &Arguments, config: &Config) -> Result<String> {
     let Arguments { log, truth, poses, fit, every, every_degrees, .. } = arguments;
     let mut digest = output::log_digest(log)?
@@ -135,7 +135,7 @@ fn tell(rows: &[(&str, Table)]) {
     }
 }
 
-/// The physics under which the kinds of the real readings are most likely.
+/// Returns the physics under which the kinds of the real readings are most likely.
 fn fit(
     arguments: &Arguments,
     config: &Config,
@@ -161,7 +161,7 @@ fn fit(
         interrupt.flow()
     });
     progress.finish();
-    let Some((place, _)) = found else { bail!("the physics of the configuration is not possible") };
+    let Some((place, _)) = found else { bail!("the physics of the configuration are impossible") };
     Ok(turned(&place))
 }
 
@@ -178,13 +178,13 @@ impl<'a> ByTime<'a> {
         Self { frames, order }
     }
 
-    /// The scan of a time; where a clock shows it again and again, that of the nearest line.
+    /// Returns the scan of a time; if several scans have this time, the one on the nearest line.
     fn beside(&self, time: f64, line: usize) -> Option<&'a (Arc<SonarRing>, Scan)> {
         let time_of = |at: &usize| self.frames.scans[*at].1.time;
         let line_of = |at: &usize| self.frames.lines[*at];
         let first = self.order.partition_point(|at| time_of(at) < time - SAME_TIME);
         let end = self.order.partition_point(|at| time_of(at) <= time + SAME_TIME);
-        // Those of one time are in the order of their lines.
+        // Scans of one time are in the order of their lines.
         let same = &self.order[first..end];
         let after = same.partition_point(|at| line_of(at) < line);
         let around = &same[after.saturating_sub(1)..(after + 1).min(same.len())];
@@ -254,7 +254,7 @@ impl Recording {
     }
 }
 
-/// Where the laser's echoes come from, for the robot \[m\].
+/// Returns the places of the laser's echoes, in the frame of the robot \[m\].
 fn echoes(ring: &SonarRing, scan: &Scan) -> Vec<Point2<f64>> {
     let beams = ring.beams().iter().zip(&scan.ranges);
     let place = |(beam, range): (&covmap_sonar::Beam, &Range)| match *range {
@@ -264,7 +264,7 @@ fn echoes(ring: &SonarRing, scan: &Scan) -> Vec<Point2<f64>> {
     beams.filter_map(place).collect()
 }
 
-/// The readings of the sonars around whose axes the laser has echoes.
+/// Returns the readings of the sonars with echoes of the laser around their axes.
 fn readings<'a>(
     ring: &'a SonarRing,
     scan: &'a Scan,

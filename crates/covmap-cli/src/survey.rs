@@ -17,7 +17,7 @@ use nalgebra::Point2;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// The side of a picture's cell \[m\], and the most of them along one side.
+/// The side of a picture's cell \[m\], and the largest number of cells along one side.
 const PICTURE_CELL: f64 = 0.05;
 const PICTURE_CELLS: f64 = 1200.0;
 
@@ -51,8 +51,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     let evidence = survey.evidence(&grid, scans(), &parameters)?;
     let png = picture(&grid, &survey, &found_in, &evidence, &parameters, log)?.to_png();
     write_file(&image, &png.map_err(about(&image))?, replace)?;
-    // Last: a survey that was corrected by hand is what is most likely refused, with its picture
-    // the same.
+    // The survey comes last: a survey corrected by hand is the most likely to be refused, and its
+    // picture is then the same.
     write_file(out, to_ron(out, &survey, Some(&comment))?.as_bytes(), replace)?;
     if !quiet {
         say::line(format!("{} walls, {} posts", survey.walls.len(), survey.posts.len()));
@@ -66,7 +66,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
     Ok(ExitCode::SUCCESS)
 }
 
-/// The file of the picture beside a survey.
+/// Returns the file of the picture beside a survey.
 fn picture_of(out: &Path) -> Result<PathBuf> {
     let extension = out.extension().unwrap_or_default();
     if extension.eq_ignore_ascii_case("png") {
@@ -78,7 +78,7 @@ fn picture_of(out: &Path) -> Result<PathBuf> {
     Ok(out.with_extension("png"))
 }
 
-/// What is to be reviewed: the survey over what the laser saw.
+/// Draws the picture for the review: the survey over the echoes of the laser.
 fn picture(
     grid: &Grid,
     survey: &Survey,

@@ -9,12 +9,12 @@ use interrupt::Interrupt;
 use progress::Progress;
 use std::fmt::Display;
 
-/// Looks on from the terminal.
+/// The observer on the terminal.
 #[derive(Debug)]
 pub struct Terminal<'a> {
-    /// Shows how far the work is.
+    /// The line of progress.
     pub progress: &'a Progress,
-    /// Ends it.
+    /// The watch for Ctrl-C.
     pub interrupt: &'a Interrupt,
 }
 

@@ -14,7 +14,7 @@ use std::process::ExitCode;
 pub(crate) fn run(arguments: &Truth) -> Result<ExitCode> {
     let Truth { world: file, resolution, out, force } = arguments;
     let replace = output::replace(out, *force, &[file])?;
-    // Coverage does not depend on how a surface answers.
+    // Coverage does not depend on the answer of a surface.
     let WorldFile { world, remarks, .. } = files::read(file, Surface::Rough)?;
     let grid = world.grid(*resolution).map_err(about(file))?;
     let coverage = world.coverage(&grid);
@@ -22,7 +22,7 @@ pub(crate) fn run(arguments: &Truth) -> Result<ExitCode> {
         writeln!(table, "x,y,coverage")?;
         for (cell, coverage) in coverage.iter() {
             let center = grid.center(cell);
-            // Rust prints as many digits as bring the number back.
+            // Rust prints enough digits to recover the number.
             writeln!(table, "{:?},{:?},{coverage:?}", center.x, center.y)?;
         }
         Ok(())

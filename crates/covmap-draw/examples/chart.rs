@@ -1,8 +1,8 @@
 //! Draws the charts of a report: lines with error bars, logarithmic axes, panels that share a
 //! legend, and a heat map, each as SVG and PNG.
 //!
-//! What they show is computed here: cells that are covered 20 % are measured again and again, and
-//! every reading is multiplied into a histogram of their coverage.
+//! The data are computed here: cells that are covered 20 % are measured again and again, and every
+//! reading is multiplied into a histogram of their coverage.
 //!
 //! ```text
 //! cargo run -p covmap-draw --example chart -- DIR
@@ -14,10 +14,10 @@ use covmap_io::FileError;
 use std::path::Path;
 use std::process::ExitCode;
 
-/// How much of each cell is covered.
+/// Coverage of each cell.
 const COVERAGE: f64 = 0.2;
 const BINS: usize = 11;
-/// Cells of which the mean is drawn, and how often each is measured.
+/// Number of cells over which the mean is taken; each is measured `READINGS` times.
 const CELLS: u64 = 200;
 const READINGS: usize = 60;
 /// Standard deviations of a reading.
@@ -50,7 +50,7 @@ fn draw(dir: &Path) -> Result<(), FileError> {
     one_cell(&cells).save(svg, png)
 }
 
-/// What is believed of a cell after 1, 2, … readings.
+/// The belief about a cell after 1, 2, … readings.
 type Measured = Vec<Histogram>;
 
 /// Measures all cells with a noise.
@@ -80,14 +80,14 @@ fn measured(noise: f64) -> Vec<Measured> {
 struct Random(u64);
 
 impl Random {
-    /// In [0, 1): a linear congruential generator.
+    /// Draws a number in [0, 1): a linear congruential generator.
     fn uniform(&mut self) -> f64 {
         self.0 =
             self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         f64::from(u32::try_from(self.0 >> 32).unwrap_or(0)) / 4_294_967_296.0
     }
 
-    /// Nearly normal: a sum of twelve has the variance 1.
+    /// Draws a nearly normal number: a sum of twelve has the variance 1.
     fn normal(&mut self) -> f64 {
         (0..12).map(|_| self.uniform()).sum::<f64>() - 6.0
     }
@@ -97,7 +97,8 @@ fn series(noise: f64, points: Vec<ChartPoint>) -> Series {
     Series { name: format!("σ = {noise}"), points, line: true, marks: true }
 }
 
-/// The mean over all cells of a number after each count of readings, from the 5th to the 95th percentile.
+/// Returns the mean over all cells of a number after `readings` readings, with a bar from the 5th
+/// to the 95th percentile.
 fn point(cells: &[Measured], readings: usize, of: impl Fn(&Histogram) -> f64) -> ChartPoint {
     let mut values: Vec<f64> = cells.iter().map(|cell| of(&cell[readings - 1])).collect();
     values.sort_by(f64::total_cmp);
@@ -110,7 +111,7 @@ fn count(n: usize) -> f64 {
     n as f64
 }
 
-/// Lines with error bars.
+/// Returns a chart of lines with error bars.
 fn entropy(cells: &[Vec<Measured>]) -> Chart {
     let curve = |(noise, cells): (f64, &Vec<Measured>)| {
         let readings = (1..=READINGS).step_by(4);
@@ -127,7 +128,7 @@ fn entropy(cells: &[Vec<Measured>]) -> Chart {
     }
 }
 
-/// Two logarithmic axes.
+/// Returns a chart with two logarithmic axes.
 fn error(cells: &[Vec<Measured>]) -> Chart {
     let off = |belief: &Histogram| (belief.mean() - COVERAGE).abs();
     let curve = |(noise, cells): (f64, &Vec<Measured>)| {
@@ -153,7 +154,7 @@ fn error(cells: &[Vec<Measured>]) -> Chart {
     }
 }
 
-/// Panels that share a legend: the posterior after some counts of readings.
+/// Returns panels that share a legend: the posterior after some numbers of readings.
 fn posteriors(cells: &[Vec<Measured>]) -> Figure {
     let panel = |readings: usize| {
         let curve = |(noise, cells): (f64, &Vec<Measured>)| {
@@ -180,7 +181,7 @@ fn posteriors(cells: &[Vec<Measured>]) -> Figure {
     }
 }
 
-/// Heat maps: the posterior of a single cell, reading by reading.
+/// Returns heat maps: the posterior of a single cell, reading by reading.
 fn one_cell(cells: &[Vec<Measured>]) -> Figure {
     let readings: Vec<f64> = (1..=READINGS).map(count).collect();
     let coverages: Vec<f64> = (0..BINS).map(|bin| bin_coverage(bin, BINS)).collect();

@@ -1,4 +1,4 @@
-//! Draws a small office as a robot might know it: coverage, where it drove, what is left.
+//! Draws a small office as a robot might know it: coverage, path, and remaining view-points.
 //!
 //! ```text
 //! cargo run -p covmap-draw --example draw_a_map -- office.png
@@ -9,7 +9,7 @@ use covmap_draw::{Key, Marker, Picture, Rgb, coverage_color};
 use nalgebra::Point2;
 use std::process::ExitCode;
 
-/// How much of a cell around a point the walls and desks cover; `None` where nobody looked.
+/// Returns the coverage of a cell around a point by walls and desks; `None` where the robot has not looked.
 fn coverage(p: Point2<f64>) -> Option<f64> {
     let wall = |from: (f64, f64), to: (f64, f64)| {
         let (a, b) = (Point2::new(from.0, from.1), Point2::new(to.0, to.1));

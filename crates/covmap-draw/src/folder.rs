@@ -1,4 +1,4 @@
-//! Where figures and tables go.
+//! Folders of figures and tables.
 
 use crate::{Drawing, Figure};
 use covmap_io::{FileError, Replace, SharedFolder};
@@ -13,17 +13,17 @@ impl FigureFolder {
     /// Makes the folder, if it is not there.
     ///
     /// # Errors
-    /// If that is not possible.
+    /// If the folder cannot be made.
     pub fn create(dir: &Path, replace: Replace) -> Result<Self, FileError> {
         SharedFolder::open(dir, replace).map(Self)
     }
 
-    /// The folder.
+    /// Returns the folder.
     pub fn dir(&self) -> &Path {
         self.0.dir()
     }
 
-    /// The path of a file in it.
+    /// Returns the path of a file in the folder.
     pub fn path(&self, name: &str) -> PathBuf {
         self.0.path(name)
     }
@@ -31,7 +31,7 @@ impl FigureFolder {
     /// Writes a file.
     ///
     /// # Errors
-    /// If that is not possible.
+    /// If the file cannot be written.
     pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<(), FileError> {
         self.0.write(name, bytes.as_ref())
     }
@@ -39,24 +39,24 @@ impl FigureFolder {
     /// Removes a file of an earlier report.
     ///
     /// # Errors
-    /// If that is not possible.
+    /// If the file cannot be removed.
     pub fn remove(&self, name: &str) -> Result<(), FileError> {
         self.0.remove(name)
     }
 
-    /// Writes `NAME.svg` and `NAME.png`.
+    /// Writes a figure as `NAME.svg` and `NAME.png`.
     ///
     /// # Errors
-    /// If that is not possible.
+    /// If the figure cannot be drawn or written.
     pub fn figure(&self, name: &str, figure: &Figure) -> Result<(), FileError> {
         self.write(&format!("{name}.svg"), figure.to_svg())?;
         self.image(name, figure.to_png()).map(drop)
     }
 
-    /// Writes `NAME.svg` and `NAME.png`.
+    /// Writes a drawing as `NAME.svg` and `NAME.png`.
     ///
     /// # Errors
-    /// If that is not possible.
+    /// If the drawing cannot be drawn or written.
     pub fn drawing(&self, name: &str, drawing: &Drawing) -> Result<(), FileError> {
         self.write(&format!("{name}.svg"), drawing.to_svg())?;
         self.image(name, drawing.to_png()).map(drop)
@@ -65,7 +65,7 @@ impl FigureFolder {
     /// Writes `NAME.png`, and returns its bytes.
     ///
     /// # Errors
-    /// If that is not possible.
+    /// If the image cannot be drawn or written.
     pub fn image(&self, name: &str, png: io::Result<Vec<u8>>) -> Result<Vec<u8>, FileError> {
         let name = format!("{name}.png");
         let fail = |reason| FileError::Io { path: self.path(&name), action: "drawn", reason };
@@ -77,7 +77,7 @@ impl FigureFolder {
     /// Writes `NAME.csv`: names of columns, and rows of as many fields.
     ///
     /// # Errors
-    /// If that is not possible.
+    /// If the file cannot be written.
     pub fn table(
         &self,
         name: &str,

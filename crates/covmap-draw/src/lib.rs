@@ -3,10 +3,10 @@
 //! [`Picture`] draws a raster of cells with lines, markers and words on it; [`Chart`] draws series of
 //! points, and [`Figure`] puts several charts side by side.
 //!
-//! This crate knows nothing of worlds, models and planners.
+//! This crate knows nothing of worlds, models or planners.
 //!
 //! # Units
-//! Metres in the world; pixels for what is drawn; coverage in \[0, 1\].
+//! Metres in the world; pixels in drawings; coverage in \[0, 1\].
 //!
 //! ```no_run
 //! use covmap_draw::{Picture, Rgb};

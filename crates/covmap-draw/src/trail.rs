@@ -1,4 +1,4 @@
-//! A path that is drawn: however long it is, a bounded number of its points is kept.
+//! A path for drawing, with a bounded number of points, whatever its length.
 
 use nalgebra::Point2;
 
@@ -8,9 +8,9 @@ const MOST: usize = 20_000;
 /// The corners of a path \[m\], every n-th of them once there are too many.
 #[derive(Debug, Default)]
 pub struct Trail {
-    /// Each with whether nothing is known of the way to it.
+    /// Each corner, and whether the way to it is unknown.
     corners: Vec<(Point2<f64>, bool)>,
-    /// The number of corners that are left out after each.
+    /// The number of corners that are left out after each kept one.
     left_out: usize,
     passed: usize,
     /// Whether the path was broken since the last corner that is kept.
@@ -18,7 +18,7 @@ pub struct Trail {
 }
 
 impl Trail {
-    /// Adds a corner; after a jump nothing is known of the way to it.
+    /// Adds a corner; after a jump the way to it is unknown.
     pub fn push(&mut self, point: Point2<f64>, jump: bool) {
         self.broken |= jump;
         if self.passed < self.left_out {
@@ -41,7 +41,7 @@ impl Trail {
         self.left_out = 2 * self.left_out + 1;
     }
 
-    /// The corners, with one that is not finite wherever the path is broken.
+    /// Returns the corners, with one that is not finite wherever the path is broken.
     pub fn line(&self) -> Vec<Point2<f64>> {
         let gap = Point2::new(f64::NAN, f64::NAN);
         let corner = |&(point, broken): &(Point2<f64>, bool)| {

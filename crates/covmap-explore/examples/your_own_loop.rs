@@ -1,4 +1,4 @@
-//! A loop of one's own, with sensors that always read the same: nothing of a simulator is built for it.
+//! A loop of your own, with sensors that always read the same; it needs no simulator.
 //!
 //! ```text
 //! cargo run -p covmap-explore --example your_own_loop
@@ -37,8 +37,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
 
         let Some(decision) = explorer.decide() else { break };
         for cell in decision.path {
-            // Drive. If the robot bumps at a place on the way: `moved` to there, then
-            // `bumped(cell, grid.center(cell))`; `moved` back, and decide anew.
+            // Drive. If the robot bumps at a place on the way, call `moved` with that place, then
+            // `bumped(cell, grid.center(cell))`, then `moved` back, and decide anew.
             explorer.moved(grid.center(cell));
             explorer.arrived(cell);
         }

@@ -1,29 +1,29 @@
-//! How a run ends.
+//! The ending of a run.
 
 use serde::{Deserialize, Serialize};
 
-/// How a run ended.
+/// Ending of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Ending {
-    /// No cell is open: the certificate says why of each.
+    /// No cell is open: the certificate gives the reason for each cell.
     Explored,
-    /// The budget of scans is spent, and something is still open.
+    /// The budget of scans is spent, and there is more to measure.
     BudgetSpent,
-    /// Nothing is open, but the robot could not leave the cell that it started in.
+    /// No cell is open, but the robot could not leave the cell that it started in.
     StartBlocked,
-    /// Nothing is open, but in the end the robot could reach no more than what one scan spends,
-    /// or could not move at all.
+    /// No cell is open, but in the end the robot could get no farther than it is wide, or could not move
+    /// at all.
     BoxedIn,
-    /// Nothing is open, but no sensor answered in the whole run: there was not one echo.
+    /// No cell is open, but no sensor received an echo in the whole run.
     NothingHeard,
     /// The hook stopped the run.
     Interrupted,
-    /// The robot failed, and something may still be open: [`Run::failure`](crate::Run::failure) says why.
+    /// The robot failed, and cells may still be open; [`Run::failure`](crate::Run::failure) holds the reason.
     RobotFailed,
 }
 
 impl Ending {
-    /// The ending as a user reads it.
+    /// Returns the ending in words for a user.
     pub fn in_words(self) -> &'static str {
         match self {
             Self::Explored => "explored: nothing is open",

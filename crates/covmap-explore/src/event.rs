@@ -1,4 +1,4 @@
-//! What happens in a run: every scan and every decision.
+//! The events of a run: scans, decisions, bumps and the end.
 
 use crate::Ending;
 use covmap::Cell;
@@ -9,60 +9,60 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
 
-/// What happens in a run.
+/// Event of a run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Event {
     /// The robot measured.
     Scan {
-        /// How many scans there were before.
+        /// The number of scans before this one.
         number: usize,
-        /// What it measured, and where.
+        /// The readings and the pose.
         scan: Scan,
     },
-    /// The planner chose.
+    /// The planner chose a view-point.
     Decision {
-        /// How many decisions there were before.
+        /// The number of decisions before this one.
         number: usize,
-        /// The cell the robot was in.
+        /// The robot's cell.
         from: Cell,
-        /// What it chose, and why.
+        /// The choice and its reasons.
         decision: Decision,
     },
     /// The robot bumped into something.
     Bump {
-        /// The cell that it was entering; its own, if it did not get to its centre.
+        /// The cell that the robot was driving to; its own cell if it was on the way to its centre.
         cell: Cell,
         /// The last place without contact \[m\].
         at: Point2<f64>,
-        /// Where it was driving \[m\].
+        /// The place that the robot was driving to \[m\].
         towards: Point2<f64>,
     },
     /// The run is over.
     End {
-        /// How it ended.
+        /// The ending.
         ending: Ending,
     },
 }
 
-/// A hash over a trace, line by line: the same for the same run.
+/// Hash over the lines of a trace; equal runs have equal hashes.
 #[derive(Debug, Clone, Default)]
 pub struct TraceHasher(Sha256);
 
 impl TraceHasher {
     /// Adds a line of the trace.
     pub fn add<T: Serialize>(&mut self, line: &T) {
-        // Numbers are written with all their digits; what cannot be written cannot differ.
+        // Numbers are written with all their digits; a line that cannot be written adds no bytes.
         self.0.update(serde_json::to_vec(line).unwrap_or_default());
         self.0.update(b"\n");
     }
 
-    /// Adds bytes that are no line of the trace, such as those of the belief.
+    /// Adds bytes that are not a line of the trace, such as those of the belief.
     pub fn add_bytes(&mut self, bytes: &[u8]) {
         self.0.update(bytes);
     }
 
-    /// The hash as a hexadecimal number.
+    /// Returns the hash as a hexadecimal number.
     pub fn finish(self) -> String {
         let mut text = String::new();
         for byte in self.0.finalize() {

@@ -1,4 +1,4 @@
-//! A robot's belief and its plans, kept in step.
+//! The explorer: a robot's belief and planner, kept in step.
 
 use crate::{Mission, MissionError, ParameterError};
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
@@ -7,12 +7,12 @@ use covmap_plan::{BodyEvidence, CellStatus, Decision, Planner, Promise, Reach, S
 use covmap_sonar::Scan;
 use nalgebra::Point2;
 
-/// The belief of a robot and the planner that reads it, with one way to tell both what happened.
+/// The belief of a robot and its planner, kept in step.
 ///
-/// Belief and planner must hear of the same things in the same order; with an `Explorer` they do. Tell it of
-/// every scan ([`see`](Self::see)), of every stretch that the robot drove ([`moved`](Self::moved)), of every
-/// cell that it came to ([`arrived`](Self::arrived)) and of every bump ([`bumped`](Self::bumped)), then ask
-/// it where to measure next ([`decide`](Self::decide)).
+/// Belief and planner must take over the same events in the same order; an `Explorer` ensures this. The
+/// caller reports every scan ([`see`](Self::see)), every stretch that the robot drove
+/// ([`moved`](Self::moved)), every cell where it arrived ([`arrived`](Self::arrived)) and every bump
+/// ([`bumped`](Self::bumped)), then asks where to measure next ([`decide`](Self::decide)).
 ///
 /// ```
 /// use covmap_explore::{Explorer, Limits, Mission, Parameters, RobotParameters};
@@ -54,21 +54,22 @@ pub struct Explorer {
     happened: Vec<(usize, BodyEvent)>,
 }
 
-/// A scan that is not one of the explorer's ring.
+/// Error of a scan that does not fit the explorer's ring.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("a scan of {found} readings; the ring has {expected} beams")]
 pub struct ScanError {
-    /// How many beams the ring has.
+    /// The number of beams of the ring.
     pub expected: usize,
-    /// How many readings the scan has.
+    /// The number of readings of the scan.
     pub found: usize,
 }
 
 impl Explorer {
-    /// A robot at the start of a mission. It knows nothing yet, but that its body fits where it is.
+    /// Returns the explorer of a robot at the start of a mission. The robot only knows that its body fits
+    /// there.
     ///
     /// # Errors
-    /// If a parameter is out of its interval, or [`Mission::validate`] finds something.
+    /// If a parameter is out of its interval, or [`Mission::validate`] fails.
     pub fn new(mission: &Mission) -> Result<Self, MissionError> {
         mission.validate()?;
         let Mission { config, grid, outside, start, .. } = mission;
@@ -102,10 +103,10 @@ impl Explorer {
         Ok(explorer)
     }
 
-    /// The robot measured.
+    /// Takes over a scan of the robot.
     ///
     /// # Errors
-    /// If the scan has not one reading for each beam; nothing is changed then.
+    /// If the scan does not have one reading for each beam; the explorer is unchanged then.
     pub fn see(&mut self, scan: &Scan) -> Result<(), ScanError> {
         let (expected, found) = (self.beams, scan.ranges.len());
         if found != expected {
@@ -118,7 +119,7 @@ impl Explorer {
         Ok(())
     }
 
-    /// The robot drove straight from where it was to a place \[m\], and touched nothing.
+    /// Takes note that the robot drove straight from where it was to a place \[m\], without contact.
     pub fn moved(&mut self, to: Point2<f64>) {
         let event = BodyEvent::Moved { from: self.at, to };
         let changes = self.believe(event).unwrap_or_default();
@@ -126,20 +127,20 @@ impl Explorer {
         self.at = to;
     }
 
-    /// The robot came straight from the cell where it was to another one, and stands there now.
+    /// Takes note that the robot came straight from its cell to another one, where it stands now.
     pub fn arrived(&mut self, cell: Cell) {
         self.planner.drove(self.cell, cell);
         self.cell = cell;
     }
 
-    /// The robot stands in a cell, however it came there.
+    /// Takes note that the robot stands in a cell, in whatever way it came there.
     pub fn found_itself(&mut self, cell: Cell) {
         self.planner.stand_on(cell);
         self.cell = cell;
     }
 
-    /// Where it is, the robot touched something on its way from its cell straight to another one, when it
-    /// drove towards a place \[m\].
+    /// Takes note that the robot, where it is now, touched something on its way straight from its cell to
+    /// another one, as it drove towards a place \[m\].
     pub fn bumped(&mut self, to: Cell, towards: Point2<f64>) {
         let at = self.at;
         self.planner.bump(self.cell, to, at);
@@ -148,7 +149,7 @@ impl Explorer {
         }
     }
 
-    /// What changed in the map by what happened to the body; `None` if that is no evidence.
+    /// The changes of the map by an event of the body; `None` if the body is no evidence.
     fn believe(&mut self, event: BodyEvent) -> Option<Vec<Change>> {
         self.body_is_evidence.then(|| {
             self.happened.push((self.scans, event));
@@ -156,67 +157,67 @@ impl Explorer {
         })
     }
 
-    /// The next view-point, the way there and the reason; `None` if nothing is open.
+    /// Chooses the next view-point, with the way there and the reason; `None` if nothing is left to measure.
     pub fn decide(&mut self) -> Option<Decision> {
         self.planner.choose(&self.map, self.cell)
     }
 
-    /// The same by a strategy of one's own: see [`Planner::choose_by`].
+    /// Decides by the caller's own strategy: see [`Planner::choose_by`].
     pub fn decide_by(&mut self, strategy: &mut dyn Scoring) -> Option<Decision> {
         self.planner.choose_by(&self.map, self.cell, strategy)
     }
 
-    /// The belief.
+    /// Returns the belief.
     pub fn map(&self) -> &CoverageMap {
         &self.map
     }
 
-    /// The planner.
+    /// Returns the planner.
     pub fn planner(&self) -> &Planner {
         &self.planner
     }
 
-    /// The grid of the map.
+    /// Returns the grid of the map.
     pub fn grid(&self) -> &Grid {
         self.map.grid()
     }
 
-    /// Where the robot is \[m\].
+    /// Returns the place of the robot \[m\].
     pub fn at(&self) -> Point2<f64> {
         self.at
     }
 
-    /// The cell in which it stands: where its ways begin.
+    /// Returns the robot's cell, where its paths begin.
     pub fn cell(&self) -> Cell {
         self.cell
     }
 
-    /// How many scans it saw.
+    /// Returns the number of scans taken over.
     pub fn scans(&self) -> usize {
         self.scans
     }
 
-    /// Whether the robot cannot get farther away than it is wide.
+    /// Whether the robot is shut in: see [`Planner::is_confined`].
     pub fn is_confined(&self) -> bool {
         self.planner.is_confined(self.cell)
     }
 
-    /// What became of every cell.
+    /// Returns the status of each cell.
     pub fn certificate(&mut self) -> Raster<CellStatus> {
         self.planner.certificate(&self.map, self.cell)
     }
 
-    /// What one more scan, from a place in reach, is expected to change about each cell.
+    /// Returns the largest expected change of each cell by one more scan from a place in reach.
     pub fn promises(&mut self) -> Raster<Option<Promise>> {
         self.planner.promises_of(self.cell)
     }
 
-    /// Where the robot can drive.
+    /// Returns for each cell whether the robot can drive there.
     pub fn reach(&self) -> Raster<Reach> {
         self.planner.reach(self.cell)
     }
 
-    /// The belief, and what the body told of it, in order, each with the number of scans before it.
+    /// The belief, and the events of the body in it, in order, each with the number of scans before it.
     pub(crate) fn into_belief(self) -> (CoverageMap, Vec<(usize, BodyEvent)>) {
         (self.map, self.happened)
     }

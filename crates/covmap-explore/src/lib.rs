@@ -1,11 +1,11 @@
 //! The exploration loop: sense → integrate → choose → drive, to a provable end.
 //!
 //! Section 5 of Stachniss & Burgard (2003). The principal function is [`explore`]: it takes a
-//! [`Mission`] and a [`Robot`], and ends with a certificate that says of every cell why there
-//! is nothing left to do.
+//! [`Mission`] and a [`Robot`], and ends with a certificate that gives the reason why each cell needs
+//! no further scan.
 //!
-//! This crate knows nothing of the truth, of simulated worlds, of files, terminals and clocks: a robot
-//! senses and drives, and all that happens is reported to one hook.
+//! This crate does not depend on the truth, simulated worlds, files, terminals or clocks: a robot senses
+//! and drives, and one hook receives every event.
 //!
 //! # Units
 //! Metres, radians, nats, seconds.

@@ -1,4 +1,4 @@
-//! What a robot is told: its body, its belief, its behaviour.
+//! The parameters of a robot: its body, its belief, its behaviour.
 
 use covmap::{GridError, short};
 use covmap_model::{ModelError, ModelParameters, SensorModel};
@@ -10,16 +10,15 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct RobotParameters {
-    /// Radius of its disc \[m\].
+    /// Radius of the body, a disc \[m\].
     pub radius: f64,
     /// Speed \[m/s\], for the times of scans.
     pub speed: f64,
-    /// Its ring of range sensors.
+    /// Ring of range sensors.
     pub ring: RingSpecification,
 }
 
-/// A robot, what it makes of the readings of its sensors, and how it plans: each section is defined by
-/// the crate that reads it.
+/// Parameters of a robot, its sensor model and its planner. The crate that reads a section defines it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parameters {
@@ -33,15 +32,15 @@ pub struct Parameters {
     pub planner: PlannerParameters,
 }
 
-/// Why parameters cannot be used.
+/// Error in the parameters.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ParameterError {
     /// A number of the robot is out of its interval.
     #[error("robot.{name}: {} must lie in [{min}, {max}]", short(value))]
     Robot {
-        /// The parameter.
+        /// Name of the parameter.
         name: &'static str,
-        /// Its value.
+        /// Value of the parameter.
         value: f64,
         /// Smallest allowed value.
         min: f64,
@@ -63,7 +62,7 @@ pub enum ParameterError {
 }
 
 impl Parameters {
-    /// The ring and the sensor model, with all sections checked but the planner's, which
+    /// Builds the ring and the sensor model. Checks all sections except the planner's, which
     /// [`covmap_plan::Planner::new`] checks.
     ///
     /// # Errors

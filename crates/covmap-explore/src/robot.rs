@@ -1,4 +1,4 @@
-//! Who senses and drives; and the record of one.
+//! The robot that senses and drives, and a recorded one.
 
 use crate::Event;
 use covmap_sonar::{Drive, Range};
@@ -6,28 +6,30 @@ use nalgebra::{Isometry2, Point2};
 use std::collections::VecDeque;
 use std::convert::Infallible;
 
-/// What a robot measured, and where.
+/// The readings of a robot, and their pose.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensed {
-    /// Where it took itself to be, `world_from_robot`.
+    /// Pose that the robot estimated, `world_from_robot`.
     pub pose: Isometry2<f64>,
     /// One reading for each beam of the ring.
     pub ranges: Vec<Range>,
 }
 
-/// A body that senses and drives. A real one may fail, be stopped on its way, drift, and turn its ring:
+/// A body that senses and drives.
 ///
-/// - what [`sense`](Self::sense) measured is integrated at the pose that it returns. Where this is not the
-///   expected place, the loop goes on from there;
-/// - the belief is right for any heading of the pose. What scans are expected to gain is computed for a ring
-///   that keeps the heading of the start;
-/// - an error ends the run with [`Ending::RobotFailed`](crate::Ending::RobotFailed), and the map up to there
+/// A real robot may fail, be stopped on its way, drift, and turn its ring:
+///
+/// - The loop integrates the readings of [`sense`](Self::sense) at the pose that it returns. If this is not
+///   the expected place, the loop goes on from there.
+/// - The belief is right for any heading of the pose. The expected information gain assumes a ring that
+///   keeps the heading of the start.
+/// - An error ends the run with [`Ending::RobotFailed`](crate::Ending::RobotFailed); the map up to the error
 ///   is kept.
 pub trait Robot {
-    /// Why it can neither sense nor drive any longer.
+    /// Error after which the robot can neither sense nor drive any longer.
     type Error: std::error::Error;
 
-    /// What the ring measures, at a pose if all went as expected.
+    /// Measures with the ring; `expected` is the pose where the robot should be.
     ///
     /// # Errors
     /// If the robot fails.
@@ -40,7 +42,7 @@ pub trait Robot {
     fn drive(&mut self, from: Point2<f64>, to: Point2<f64>) -> Result<Drive, Self::Error>;
 }
 
-/// The record of a run: it senses and bumps as its trace says. Exploring with it repeats
+/// Robot that repeats the record of a run: it senses and bumps as in the trace. Exploring with it repeats
 /// the run up to the end of the trace.
 #[derive(Debug, Clone)]
 pub struct RecordedRobot {
@@ -49,7 +51,7 @@ pub struct RecordedRobot {
 }
 
 impl RecordedRobot {
-    /// A robot with `beams` sensors that repeats the events of a trace.
+    /// Returns a robot with `beams` sensors that repeats the events of a trace.
     pub fn new(events: impl IntoIterator<Item = Event>, beams: usize) -> Self {
         let repeats = |e: &Event| matches!(e, Event::Scan { .. } | Event::Bump { .. });
         Self { events: events.into_iter().filter(repeats).collect(), beams }
@@ -59,7 +61,7 @@ impl RecordedRobot {
 impl Robot for RecordedRobot {
     type Error = Infallible;
 
-    /// The next recorded scan; nothing once the record has ended.
+    /// Returns the next recorded scan; missing readings once the record has ended.
     fn sense(&mut self, expected: &Isometry2<f64>) -> Result<Sensed, Infallible> {
         Ok(match self.events.pop_front() {
             Some(Event::Scan { scan, .. }) if scan.ranges.len() == self.beams => {

@@ -1,4 +1,4 @@
-//! The loop.
+//! The exploration loop.
 
 use crate::{Ending, Event, Explorer, Mission, MissionError, Robot, Sensed, standing_place};
 use covmap::{Cell, CoverageMap, Raster};
@@ -9,51 +9,51 @@ use nalgebra::{Isometry2, Point2};
 use std::error::Error;
 use std::ops::ControlFlow;
 
-/// What a run came to.
+/// The result of a run.
 #[derive(Debug, Clone)]
 pub struct Run {
-    /// How it ended.
+    /// The ending.
     pub ending: Ending,
-    /// Why the robot failed, if it did.
+    /// Reason why the robot failed, if it did.
     pub failure: Option<String>,
     /// The belief.
     pub map: CoverageMap,
-    /// What became of every cell.
+    /// Status of each cell.
     pub certificate: Raster<CellStatus>,
-    /// What one more scan, from a place in reach, is expected to change about each cell.
+    /// Largest expected change of each cell by one more scan from a place in reach.
     pub promises: Raster<Option<Promise>>,
-    /// Where the robot could drive, as it saw it in the end.
+    /// Whether the robot could drive to each cell, by its belief at the end.
     pub reach: Raster<Reach>,
     /// Every scan, in order.
     pub scans: Vec<Scan>,
-    /// What the body told of the map, in order, each with the number of scans before it.
+    /// Events of the body in the belief, in order, each with the number of scans before it.
     pub body: Vec<(usize, BodyEvent)>,
     /// The corners of the driven path \[m\].
     pub trajectory: Vec<Point2<f64>>,
     /// Length of the path \[m\].
     pub path_length: f64,
-    /// How many decisions were made.
+    /// The number of decisions.
     pub decisions: usize,
-    /// Where the robot's centre was when it bumped into something \[m\].
+    /// Places of the robot's centre when it bumped into something \[m\].
     pub bumped_at: Vec<Point2<f64>>,
-    /// How many candidates had a negative expected information gain, over all decisions.
+    /// The number of candidates with a negative expected information gain, over all decisions.
     pub negative_gains: usize,
-    /// How many scans were counted for each cell: those that should have told something
-    /// about it while it was unfinished.
+    /// The number of scans counted for each cell: those expected to tell something about the cell while
+    /// it was unfinished.
     pub counts: Raster<u32>,
-    /// How many cells were given up by the cap on counted scans.
+    /// The number of cells given up by the cap on counted scans.
     pub capped_cells: usize,
 }
 
 impl Run {
-    /// How far the robot turned on its way: the angles between one piece of the path and the next, each
-    /// at most π, summed up \[rad\].
+    /// Returns the sum of the robot's turns \[rad\]: the angles between each piece of the path and the next,
+    /// at most π each.
     pub fn turns(&self) -> f64 {
         turns(self.trajectory.windows(2).map(|ends| ends[1] - ends[0]))
     }
 
-    /// The most that one more scan is expected to lower the entropy of some cell of a status by
-    /// \[nats\]; `None` if there is none, or nothing is known of that.
+    /// Returns the largest expected fall of a cell's entropy by one more scan, among the cells of a status
+    /// \[nats\]; `None` if there is no such cell, or none with a promise.
     pub fn most_promised(&self, status: CellStatus) -> Option<f64> {
         let of = self.certificate.iter().filter(|(_, is)| **is == status);
         let change = |(cell, _): (Cell, &CellStatus)| Some((*self.promises.get(cell)?)?.change);
@@ -61,14 +61,14 @@ impl Run {
     }
 }
 
-/// What can be looked at while a run goes on.
+/// The state of a run that goes on, for its hook.
 #[derive(Debug)]
 pub struct View<'a> {
     /// The belief.
     pub map: &'a CoverageMap,
     /// The planner.
     pub planner: &'a Planner,
-    /// How many scans there were.
+    /// The number of scans so far.
     pub scans: usize,
     /// Length of the path so far \[m\].
     pub path_length: f64,
@@ -76,14 +76,14 @@ pub struct View<'a> {
     pub trajectory: &'a [Point2<f64>],
 }
 
-/// Explores until nothing is open, the budget is spent, the hook says stop, or the robot fails.
+/// Explores until no cell is open, the budget is spent, the hook stops the run, or the robot fails.
 ///
-/// The hook sees every event when it happens: a scan after it is integrated, a decision
-/// before it is carried out. The run is a function of the mission and of what the robot
-/// senses.
+/// The hook receives every event when it happens: a scan after it is integrated, a decision
+/// before it is carried out. The run is a function of the mission and of the results of the robot's
+/// [`sense`](Robot::sense) and [`drive`](Robot::drive).
 ///
 /// # Errors
-/// If the mission's parameters are invalid, or [`Mission::validate`] finds something.
+/// If the mission's parameters are invalid, or [`Mission::validate`] fails.
 pub fn explore<R: Robot>(
     mission: &Mission,
     robot: &mut R,
@@ -92,8 +92,8 @@ pub fn explore<R: Robot>(
     Circle::new(mission, robot, hook, None)?.finished()
 }
 
-/// The same with a strategy of one's own, which scores the candidates of every decision: see [`Scoring`]. A run
-/// whose strategy scores none of them above −∞ is over.
+/// Explores with the caller's own strategy, which scores the candidates of every decision: see [`Scoring`].
+/// The run ends when the strategy scores no candidate above −∞.
 ///
 /// # Errors
 /// As [`explore`].
@@ -112,18 +112,18 @@ const ROUNDING: f64 = 1e-9;
 /// scans are to be farther apart than there is way to drive.
 const MOST_ARRIVALS: usize = 1000;
 
-/// Why a run does not go on.
+/// Reason why a run stops.
 enum Stop {
-    /// The hook said so.
+    /// The hook stopped it.
     ByHook,
-    /// The robot failed, and how.
+    /// The robot failed, for this reason.
     Failed(String),
 }
 
-/// What goes on until there is a reason to stop.
+/// The result of a part of a run, or the reason to stop.
 type Flow<T = ()> = ControlFlow<Stop, T>;
 
-/// What a robot did, or why it failed.
+/// Continues with the robot's result, or stops with the reason why it failed.
 fn done<T, E: Error>(result: Result<T, E>) -> Flow<T> {
     match result {
         Ok(value) => ControlFlow::Continue(value),
@@ -131,7 +131,7 @@ fn done<T, E: Error>(result: Result<T, E>) -> Flow<T> {
     }
 }
 
-/// Sense, integrate, choose, drive.
+/// The loop: sense, integrate, choose, drive.
 struct Circle<'a, R, H> {
     mission: &'a Mission,
     robot: &'a mut R,
@@ -139,13 +139,13 @@ struct Circle<'a, R, H> {
     strategy: Option<&'a mut dyn Scoring>,
     explorer: Explorer,
     left_start: bool,
-    /// The robot stands where a step ends: not yet, at a start that is off its cell's centre, nor where it
+    /// Whether the robot stands where a step ends; not so at a start off its cell's centre, nor where it
     /// was stopped or drifted to.
     settled: bool,
-    /// The robot does not get to the centre of the cell that it started in: the start itself
-    /// stands for it.
+    /// Whether the robot cannot get to the centre of the cell that it started in: the start itself
+    /// replaces the centre.
     cramped: bool,
-    /// How far the robot drove since it last measured [m].
+    /// Distance that the robot drove since the last scan [m].
     since_scan: f64,
     /// Where it arrived since, without measuring.
     arrivals: usize,
@@ -231,7 +231,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
         is_due
     }
 
-    /// How a run ended after which nothing is open.
+    /// The ending of a run after which no cell is open.
     fn ending(&self) -> Ending {
         let answers = |scan: &Scan| scan.ranges.iter().any(|r| matches!(r, Range::Echo(_)));
         if !self.scans.iter().any(answers) {
@@ -277,7 +277,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
         self.report(Event::Scan { number: self.scans.len() - 1, scan })
     }
 
-    /// The robot is elsewhere than expected.
+    /// Takes note that the robot is not at the expected place.
     fn drifted(&mut self, to: Point2<f64>) -> Flow {
         let Some(cell) = self.explorer.grid().cell_at(to) else {
             let reason = format!("the robot is outside of the map, at ({}, {})", to.x, to.y);
@@ -291,7 +291,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
         ControlFlow::Continue(())
     }
 
-    /// Drives from where it is over some cells; `false` if it did not get to the last one.
+    /// Drives over some cells; `false` if the robot did not get to the last one.
     fn drive(&mut self, path: &[Cell]) -> Flow<bool> {
         if !self.settled {
             self.settled = true;
@@ -311,8 +311,8 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
         ControlFlow::Continue(true)
     }
 
-    /// Drives to its place in a cell, measuring on the way if that is wanted; `false` if it did not get
-    /// there. After a bump the robot backs to where it came from.
+    /// Drives to the robot's place in a cell, with scans on the way if the mission asks for them; `false` if
+    /// the robot did not get there. After a bump it backs to where it came from.
     fn drive_straight(&mut self, cell: Cell) -> Flow<bool> {
         let (home, place) = (self.explorer.at(), self.place(cell));
         loop {

@@ -16,7 +16,7 @@ const WALL: f64 = 1.53;
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let ring = SonarRing::b21r();
     let grid = Grid::new(Point2::new(-1.0, -1.5), 0.1, 30, 30)?;
-    // Only what looks at the wall within 30° hears it, 1 cm too near or too far.
+    // Only a sensor that looks at the wall within 30° hears it, 1 cm too near or too far.
     let scan = |i: i32| {
         let pose = Isometry2::new(Vector2::new(0.1 * f64::from(i % 5), 0.0), 0.05 * f64::from(i));
         let error = if i % 2 == 0 { 0.01 } else { -0.01 };

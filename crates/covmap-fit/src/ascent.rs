@@ -10,13 +10,13 @@ pub(crate) trait Objective {
 
 /// The number of last steps from which the curvature is estimated.
 const MEMORY: usize = 12;
-/// The most steps.
+/// The largest number of steps.
 const STEPS: usize = 400;
-/// Where no slope is steeper than this, the maximum is found.
+/// Slope below which the maximum is found.
 const FLAT: f64 = 1e-6;
-/// A step has to gain this share of what its slope promises.
+/// Least gain of a step, as a share of the promise of its slope.
 const SUFFICIENT: f64 = 1e-4;
-/// A step is halved at most so often.
+/// The largest number of halvings of a step.
 const HALVINGS: usize = 40;
 
 /// Climbs from a place to the maximum: limited-memory BFGS \[Nocedal, 1980\] with a line search
@@ -47,7 +47,7 @@ pub(crate) fn climb(objective: &impl Objective, mut place: Vec<f64>) -> Vec<f64>
         });
         let Some((there, higher, steepness)) = step else { break };
         let moved: Vec<f64> = there.iter().zip(&place).map(|(to, from)| to - from).collect();
-        // Of the function turned upside down, so that curvature is positive.
+        // The change of the function turned upside down, so that curvature is positive.
         let change: Vec<f64> =
             steepness.iter().zip(&gradient).map(|(to, from)| from - to).collect();
         let product = dot(&moved, &change);
@@ -62,14 +62,14 @@ pub(crate) fn climb(objective: &impl Objective, mut place: Vec<f64>) -> Vec<f64>
     place
 }
 
-/// What a step told of the curvature.
+/// The curvature along a step.
 struct Curvature {
     moved: Vec<f64>,
     change: Vec<f64>,
     product: f64,
 }
 
-/// The direction of the quasi-Newton step: two loops over the memory.
+/// Returns the direction of the quasi-Newton step: two loops over the memory.
 fn uphill(memory: &VecDeque<Curvature>, gradient: &[f64]) -> Vec<f64> {
     let mut direction = gradient.to_vec();
     let mut shares = Vec::new();

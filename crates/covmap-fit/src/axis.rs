@@ -21,13 +21,13 @@ pub enum Parameter {
     SigmaOutPerRange,
     /// σ_in.
     SigmaIn,
-    /// How far behind the end cells are covered \[m\].
+    /// Distance behind the end up to which cells are covered \[m\].
     Behind,
     /// The half-angle of the footprint \[rad\].
     HalfAngle,
     /// The usable range \[m\].
     UsableRange,
-    /// Up to where no echo marks cells as free \[m\].
+    /// Distance up to which no echo marks cells as free \[m\].
     NoEchoRange,
     /// γ of these cells.
     NoEchoGamma,
@@ -39,11 +39,11 @@ pub enum Parameter {
     CellDepth,
     /// Expected coverage of unknown cells.
     UnknownCoverage,
-    /// p: how sharply expected coverage tells who answered.
+    /// p: exponent on the expected coverage of a surface that may have answered.
     Sharpness,
-    /// a_0: how much chance competes.
+    /// a_0: weight of chance.
     Chance,
-    /// κ: how much a clear view counts.
+    /// κ: exponent on the clear part of the view.
     FirstEcho,
     /// σ_in of the update by cause at distance 0.
     EndSigmaBase,
@@ -55,24 +55,24 @@ pub enum Parameter {
     BehindSigma,
     /// f_0: share of "free" at the sensor.
     FreeShare,
-    /// d_f: where 1/e of it is left \[m\].
+    /// d_f: distance at which 1/e of it is left \[m\].
     FreeRange,
-    /// How fast it falls with the bearing, in half-widths.
+    /// Standard deviation of its decrease with the bearing, in half-widths.
     FreeWidth,
     /// σ of "free".
     FreeSigma,
-    /// β: how surely an echo from beyond the usable range passed.
+    /// β: certainty that an echo from beyond the usable range passed.
     Beyond,
-    /// ν: how surely a beam without an echo passed.
+    /// ν: certainty that a beam without an echo passed.
     NoEchoShare,
-    /// ρ_0: how much a second reading from one place repeats the first.
+    /// ρ_0: probability that a second reading from one place repeats the first.
     RepeatsShare,
-    /// λ: how far they share errors \[m\].
+    /// λ: distance over which readings share errors \[m\].
     RepeatsDistance,
 }
 
 impl Parameter {
-    /// Where the parameter stands; `None` if the update has no such parameter.
+    /// Returns the place of the parameter; `None` if the update has no such parameter.
     fn place(self, p: &mut ModelParameters) -> Option<&mut f64> {
         match (self, &mut p.update) {
             (Self::HalfAngle, _) => match &mut p.footprint {
@@ -129,13 +129,13 @@ impl Parameter {
         })
     }
 
-    /// Its value; `None` if the update has no such parameter.
+    /// Returns its value; `None` if the update has no such parameter.
     pub fn get(self, parameters: &ModelParameters) -> Option<f64> {
         self.place(&mut parameters.clone()).map(|value| *value)
     }
 
-    /// Sets it; nothing happens if the update has no such parameter. Whether the parameters still
-    /// make a model is checked where one is built.
+    /// Sets its value; does nothing if the update has no such parameter. The constructor of a model
+    /// checks whether the parameters still make one.
     pub fn set(self, parameters: &mut ModelParameters, value: f64) {
         if let Some(place) = self.place(parameters) {
             *place = value;
@@ -145,9 +145,10 @@ impl Parameter {
 
 /// A free parameter and the interval in which it is sought.
 ///
-/// The search walks over \[0, 1\]; `place` in it is `from + (to − from)·place`, or, if `from`
-/// is above 0, `from·(to/from)^place`: scales are sought in steps of a factor. `P` is one of
-/// the sensor model's parameters, or of those of any method ([`crate::MethodParameter`]).
+/// The search walks over \[0, 1\]. A `place` in it stands for the value `from + (to − from)·place`,
+/// or, if `from` is above 0, for `from·(to/from)^place`: scales are sought in steps of a factor.
+/// `P` is one of the sensor model's parameters, or of those of any method
+/// ([`crate::MethodParameter`]).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Axis<P = Parameter> {
@@ -159,7 +160,7 @@ pub struct Axis<P = Parameter> {
     pub to: f64,
 }
 
-/// Why an axis cannot be searched.
+/// Error of an axis that cannot be searched.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum AxisError<P: Debug = Parameter> {
     /// The bounds are no interval.
@@ -197,7 +198,7 @@ impl<P: Copy + PartialEq + Debug> Axis<P> {
         Ok(())
     }
 
-    /// The value at a place in \[0, 1\].
+    /// Returns the value at a place in \[0, 1\].
     pub fn value(&self, place: f64) -> f64 {
         let Self { from, to, .. } = *self;
         let value = if from > 0.0 {
@@ -208,7 +209,7 @@ impl<P: Copy + PartialEq + Debug> Axis<P> {
         value.clamp(from, to)
     }
 
-    /// The place in \[0, 1\] of a value, which is moved into the bounds.
+    /// Returns the place in \[0, 1\] of a value, which is moved into the bounds.
     pub fn place_of(&self, value: f64) -> f64 {
         let Self { from, to, .. } = *self;
         let value = value.clamp(from, to);
@@ -222,7 +223,7 @@ impl<P: Copy + PartialEq + Debug> Axis<P> {
 }
 
 impl Axis {
-    /// The place in \[0, 1\] of the value that some parameters have.
+    /// Returns the place in \[0, 1\] of the value that some parameters have.
     ///
     /// # Errors
     /// If their update has no such parameter.
@@ -238,8 +239,8 @@ impl Axis {
 }
 
 impl Axis {
-    /// All parameters of an update but the footprint's and the usable range, each in a box that is
-    /// wide enough for every fit so far.
+    /// Returns the axes of the parameters of an update, but for those of the footprint, the usable
+    /// range and repeated readings, each in a box that is wide enough for every fit so far.
     pub fn all_of(update: &Update) -> Vec<Self> {
         use Parameter as P;
         let axes: &[(P, f64, f64)] = match update {

@@ -17,7 +17,7 @@ pub struct ByClass<T> {
 }
 
 impl<T> ByClass<T> {
-    /// The value of `f` for all cells (`None`) and for each class.
+    /// Creates the values of `f` for all cells (`None`) and for each class.
     pub fn from_fn(mut f: impl FnMut(Option<Class>) -> T) -> Self {
         Self {
             all: f(None),
@@ -27,7 +27,7 @@ impl<T> ByClass<T> {
         }
     }
 
-    /// The value of all cells (`None`) or of a class.
+    /// Returns the value of all cells (`None`) or of a class.
     pub fn get(&self, class: Option<Class>) -> &T {
         match class {
             None => &self.all,
@@ -37,7 +37,7 @@ impl<T> ByClass<T> {
         }
     }
 
-    /// The value of a class.
+    /// Returns the value of a class.
     pub(crate) fn of_class_mut(&mut self, class: Class) -> &mut T {
         match class {
             Class::Free => &mut self.free,

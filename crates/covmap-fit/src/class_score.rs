@@ -1,4 +1,4 @@
-//! How well posteriors explain the truth, class by class.
+//! Scores of posteriors against the truth, class by class.
 
 use crate::{ByClass, Class};
 use covmap::{bin_coverage, mode_bin};
@@ -7,15 +7,15 @@ use serde::{Deserialize, Serialize};
 use std::iter::Sum;
 use std::ops::Add;
 
-/// Modes strictly between these are partly covered.
+/// Bounds of the modes that are partly covered, strictly between them.
 const BETWEEN: (f64, f64) = (0.05, 0.95);
-/// A cell with a mode of at least this is found to be a wall.
+/// Least mode of a cell that is found to be a wall.
 const FOUND: f64 = 0.5;
 
-/// How well a map explains the cells of one class: means over the cells.
+/// Scores of a map on the cells of one class: means over the cells.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct ClassScore {
-    /// How many cells.
+    /// Number of cells.
     pub cells: usize,
     /// Log-likelihood of the truth, with the floor of `covmap` \[nats\].
     pub log_likelihood: f64,
@@ -23,7 +23,7 @@ pub struct ClassScore {
     pub crps: f64,
     /// Absolute error of the expected coverage.
     pub error: f64,
-    /// Absolute error of the most likely coverage; where two are, of the lower one.
+    /// Absolute error of the most likely coverage; of two such, of the lower one.
     pub error_of_mode: f64,
     /// The share of modes in (.05, .95).
     pub between: f64,
@@ -37,11 +37,11 @@ pub struct ClassScore {
     pub held_90: f64,
 }
 
-/// How well a map explains the truth: all cells, and those of each class.
+/// Scores of a map against the truth: of all cells, and of those of each class.
 pub type ExampleScore = ByClass<ClassScore>;
 
 impl ClassScore {
-    /// What the posterior of one cell is worth.
+    /// Scores the posterior of one cell.
     pub(crate) fn of_cell(posterior: &[f64], truth: f64) -> Self {
         let mode = bin_coverage(mode_bin(posterior), posterior.len());
         let share = |is: bool| f64::from(u8::from(is));
@@ -58,7 +58,7 @@ impl ClassScore {
         }
     }
 
-    /// Every mean times a number.
+    /// Multiplies every mean by a number.
     fn times(self, factor: f64) -> Self {
         Self {
             cells: self.cells,
@@ -73,7 +73,7 @@ impl ClassScore {
         }
     }
 
-    /// Means in place of sums.
+    /// Returns means in place of sums.
     fn mean(self) -> Self {
         self.times(1.0 / count(self.cells).max(1.0))
     }
@@ -115,7 +115,7 @@ impl ExampleScore {
         Self::from_fn(|class| sums.get(class).mean())
     }
 
-    /// The score of all examples together, cell by cell, from that of each.
+    /// Returns the score of all examples together, cell by cell, from that of each.
     pub(crate) fn pooled(scores: &[Self]) -> Self {
         let sum = |score: &ClassScore| score.times(count(score.cells));
         Self::from_fn(|class| scores.iter().map(|s| sum(s.get(class))).sum::<ClassScore>().mean())
@@ -126,7 +126,7 @@ fn count(cells: usize) -> f64 {
     cells as f64
 }
 
-/// The expected coverage of a posterior.
+/// Returns the expected coverage of a posterior.
 pub(crate) fn mean(posterior: &[f64]) -> f64 {
     let bins = posterior.len();
     posterior.iter().enumerate().map(|(k, p)| p * bin_coverage(k, bins)).sum()
@@ -140,7 +140,7 @@ mod tests {
         (0..11).map(|k| f64::from(u8::from(k == bin))).collect()
     }
 
-    /// The score of one free, one half covered and one solid cell.
+    /// Returns the score of one free, one half covered and one solid cell.
     fn score(bins: [usize; 3]) -> ExampleScore {
         ExampleScore::of(bins.map(sure_of).into_iter().zip([0.0, 0.5, 1.0]))
     }

@@ -17,24 +17,24 @@ use serde::Serialize;
 /// A method with its name, ready to be compared: tuned, if it is to be.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Contender {
-    /// What the rows call it.
+    /// Its name in the rows.
     pub name: String,
-    /// The method whose posteriors are taken as they are.
+    /// The method whose posteriors count as they are.
     pub raw: Method,
-    /// The method whose posteriors go through the table. The same, or one that was tuned for
-    /// it: parameters that make the best of raw posteriors, by leaving walls unknown rather
-    /// than being too sure of them, need not tell the table most.
+    /// The method whose posteriors go through the table: the same, or one that was tuned for it.
+    /// Parameters that make the best of raw posteriors, by leaving walls unknown rather than being
+    /// too certain of them, need not tell the table most.
     pub calibrated: Method,
 }
 
-/// How methods are compared.
+/// Settings of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparisonSettings {
-    /// What the objective of a row is the mean of.
+    /// Weighting of the cells in the objective of a row.
     pub weighting: Weighting,
-    /// Into how many blocks each trajectory is cut.
+    /// Number of blocks of each trajectory.
     pub blocks: usize,
-    /// How often the blocks are resampled.
+    /// Number of resamples of the blocks.
     pub resamples: usize,
     /// The contender to which the others are compared, cell by cell; raw to raw, calibrated
     /// to calibrated.
@@ -69,10 +69,10 @@ pub struct Difference {
     pub interval: Option<(f64, f64)>,
 }
 
-/// How well a method explains the cells of one class.
+/// Scores of a method on the cells of one class.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct ClassComparison {
-    /// How many cells.
+    /// Number of cells.
     pub cells: usize,
     /// Mean log-likelihood of the truth, with the floor of `covmap` \[nats\].
     pub log_likelihood: CellMean,
@@ -80,12 +80,12 @@ pub struct ClassComparison {
     pub crps: CellMean,
     /// Mean absolute error of the expected coverage.
     pub error: CellMean,
-    /// The share of cells whose randomised probability integral transform lies in the
-    /// central half, \[.25, .75\]: ½ for a calibrated method, over all cells. (Within a class
-    /// not even the true posterior need meet it: the class is chosen by the truth. And mass at
-    /// both ends puts every partial truth in the middle: read it beside CRPS.)
+    /// The share of cells whose randomised probability integral transform lies in the central half,
+    /// \[.25, .75\]: ½ for a calibrated method, over all cells. (Within a class even the true
+    /// posterior need not meet it: the truth chooses the class. And mass at both ends puts every
+    /// partial truth in the middle: compare it with the CRPS.)
     pub central_50: CellMean,
-    /// The same for \[.05, .95\] and .9.
+    /// The same share for \[.05, .95\], and .9 for a calibrated method.
     pub central_90: CellMean,
 }
 
@@ -147,7 +147,7 @@ pub fn compare(
     Ok(rows.collect())
 }
 
-/// The calibration table of a method from training examples.
+/// Returns the calibration table of a method from training examples.
 ///
 /// # Errors
 /// If a parameter is out of its interval or does not fit an example.
@@ -158,7 +158,7 @@ pub fn table(method: &Method, training: &[Example]) -> Result<CalibrationTable, 
     Ok(table_of(&method.posteriors_of(training)?, training, method.model.bins))
 }
 
-/// The calibration table of the posteriors of some examples.
+/// Returns the calibration table of the posteriors of some examples.
 pub(crate) fn table_of(
     posteriors: &[Vec<Vec<f64>>],
     examples: &[Example],
@@ -171,15 +171,15 @@ pub(crate) fn table_of(
 /// A cell of the test examples.
 struct TestCell {
     truth: f64,
-    /// Of the blocks of all examples.
+    /// Index among the blocks of all examples.
     block: usize,
-    /// What randomises the transform.
+    /// Random numbers of the transform.
     chance: (f64, f64),
 }
 
 struct TestCells {
     cells: Vec<TestCell>,
-    /// How many blocks have cells.
+    /// The number of blocks with cells.
     blocks: usize,
 }
 
@@ -215,7 +215,7 @@ impl TestCells {
                 cells.push(TestCell { truth: *truth, block, chance: (uniform(), uniform()) });
             }
         }
-        // Blocks without cells are none.
+        // Blocks without cells do not count.
         let mut used: Vec<usize> = cells.iter().map(|cell| cell.block).collect();
         used.sort_unstable();
         used.dedup();
@@ -225,7 +225,7 @@ impl TestCells {
         Self { cells, blocks: used.len() }
     }
 
-    /// The sums of every block, for what `output` makes of each posterior.
+    /// Returns the sums of every block, of the `output` for each posterior.
     fn sums<'a>(
         &self,
         posteriors: &'a [Vec<Vec<f64>>],
@@ -247,8 +247,8 @@ impl TestCells {
     }
 }
 
-/// What the estimates of a row come from: sums of every block of one method and of the
-/// reference, and how often each block is drawn.
+/// The data of the estimates of a row: sums of every block of one method and of the reference, and
+/// the number of draws of each block.
 struct CellMeans<'a> {
     own: &'a [Sums],
     reference: Option<&'a [Sums]>,
@@ -278,7 +278,7 @@ impl CellMeans<'_> {
         Row { name: name.to_owned(), calibrated, objective, classes }
     }
 
-    /// An estimate; without intervals if there are not enough blocks.
+    /// Returns an estimate, without intervals if there are not enough blocks.
     fn estimate(
         &self,
         enough: bool,
@@ -298,7 +298,7 @@ impl CellMeans<'_> {
     }
 }
 
-/// The mean of a measure over the cells of a class, blocks counted as often as they are
+/// Returns the mean of a measure over the cells of a class, blocks counted as often as they are
 /// drawn; `None` if no such cell is drawn.
 fn average(
     sums: &[Sums],

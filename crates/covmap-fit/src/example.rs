@@ -1,4 +1,4 @@
-//! What the model is fitted to: scans, and the truth of a fixed set of cells.
+//! The data of a fit: scans, and the truth of a fixed set of cells.
 
 use covmap::{Cell, Change, CoverageMap, Grid, Histogram};
 use covmap_model::{Body, BodyEvent, Looks, ModelError, ModelParameters, SensorModel};
@@ -11,13 +11,13 @@ use covmap_sonar::{Scan, SonarRing};
 /// a uniform posterior.
 #[derive(Debug, Clone)]
 pub struct Example {
-    /// What it is, for reports.
+    /// Its name in reports.
     pub name: String,
     /// The sensors that made the scans.
     pub ring: SonarRing,
     /// The scans, in order.
     pub scans: Vec<Scan>,
-    /// What the robot's body told of the map between them.
+    /// Events of the robot's body between the scans.
     pub body: BodyRecord,
     /// The grid of the map.
     pub grid: Grid,
@@ -25,18 +25,17 @@ pub struct Example {
     pub truth: Vec<(Cell, f64)>,
 }
 
-/// What happened to the body of a robot between its scans. The default is that nothing is known
-/// of it.
+/// Events of a robot's body between its scans; none by default.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct BodyRecord {
     /// Radius of its disc \[m\].
     pub radius: f64,
-    /// What happened, in order, each with the number of scans before it.
+    /// The events in order, each with the number of scans before it.
     pub events: Vec<(usize, BodyEvent)>,
 }
 
 impl BodyRecord {
-    /// A body that stood without contact where each scan was made.
+    /// Creates the record of a body that stood without contact where each scan was made.
     pub fn standing(radius: f64, scans: &[Scan]) -> Self {
         let at = |scan: &Scan| scan.pose.translation.vector.into();
         let stood = |scan| BodyEvent::Moved { from: at(scan), to: at(scan) };
@@ -45,7 +44,7 @@ impl BodyRecord {
 }
 
 impl Example {
-    /// The map that a model builds from the scans and the body, as the loop does.
+    /// Builds the map of a model from the scans and the body, as the loop does.
     ///
     /// # Errors
     /// If the parameters make no model for the ring and the grid.
@@ -58,8 +57,8 @@ impl Example {
         self.map_by(model.parameters().bins, |map, scan| looks.integrate(model, map, scan))
     }
 
-    /// What a map says of each cell of the truth, and the truth: the posterior, uniform where
-    /// nothing is known and outside of the map.
+    /// Returns the posterior of a map for each cell of the truth, with the truth. The posterior is
+    /// uniform for an unknown cell and outside of the map.
     pub fn cells_of(&self, map: &CoverageMap) -> Vec<(Vec<f64>, f64)> {
         let posterior = |cell: Cell| match map.grid().index(cell) {
             Some(_) => map.histogram(cell),
@@ -70,8 +69,8 @@ impl Example {
         self.truth.iter().map(cell).collect()
     }
 
-    /// The map after all scans and what happened to the body, in their order, if `take_in`
-    /// integrates a scan and says what changed.
+    /// Builds the map after all scans and events of the body, in their order. `take_in` integrates
+    /// a scan and returns its changes.
     pub(crate) fn map_by(
         &self,
         bins: usize,
@@ -93,7 +92,7 @@ impl Example {
     }
 }
 
-/// The true coverages of the cells of some examples, in their order.
+/// Returns the true coverages of the cells of some examples, in their order.
 pub(crate) fn truths(examples: &[Example]) -> impl Iterator<Item = f64> {
     examples.iter().flat_map(|e| &e.truth).map(|(_, coverage)| *coverage)
 }

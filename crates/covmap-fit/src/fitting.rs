@@ -8,24 +8,24 @@ use covmap_model::{ModelError, ModelParameters};
 use serde::Serialize;
 use std::ops::ControlFlow;
 
-/// How the parameters are sought.
+/// Settings of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FitSettings {
-    /// What the likelihood is the mean of.
+    /// Weighting of the cells in the mean likelihood.
     pub weighting: Weighting,
     /// The free parameters. All others stay as they are.
     pub axes: Vec<Axis>,
-    /// How many local searches: the first from the given parameters, the others from places
-    /// drawn at random. The best result counts.
+    /// Number of local searches: the first from the given parameters, the others from places drawn
+    /// at random. The best result counts.
     pub starts: usize,
-    /// Each search.
+    /// Settings of each search.
     pub search: SearchSettings,
 }
 
 /// One evaluation of the objective.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Evaluation {
-    /// Which search it belongs to, from 0.
+    /// Number of its search, from 0.
     pub start: usize,
     /// The values of the free parameters, in the order of the axes.
     pub values: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct Profile {
     pub points: Vec<(f64, Option<f64>)>,
 }
 
-/// What a fit came to.
+/// Result of a fit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fitted {
     /// The best parameters.
@@ -52,11 +52,11 @@ pub struct Fitted {
     pub log_likelihood: f64,
     /// Every evaluation, in order.
     pub path: Vec<Evaluation>,
-    /// One for each axis.
+    /// One for each axis; none if the fit was ended early.
     pub profiles: Vec<Profile>,
 }
 
-/// Why nothing can be fitted.
+/// Error of a fit that cannot begin.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FitError {
     /// There is nothing to fit to.
@@ -70,11 +70,13 @@ pub enum FitError {
     Begin(ModelError),
 }
 
-/// The points of a profile.
+/// The number of points of a profile.
 const PROFILE_POINTS: u32 = 11;
 
-/// Fits the free parameters to examples: the largest mean log-likelihood of the true
-/// coverage of their cells under the maps that the model builds from their scans.
+/// Fits the free parameters to examples.
+///
+/// The fit seeks the largest mean log-likelihood of the true coverage of their cells under the maps
+/// that the model builds from their scans.
 ///
 /// `uniform` draws uniform numbers in \[0, 1), for the starts; `report` sees every evaluation
 /// when it is made, and may end the search: the best so far is then the result, and there are
@@ -139,7 +141,7 @@ pub fn fit(
     Ok(Fitted { parameters: parameters(&place), log_likelihood, path, profiles })
 }
 
-/// How well the maps that a model builds explain all examples together, cell by cell.
+/// Scores the maps that a model builds on all examples together, cell by cell.
 ///
 /// # Errors
 /// If the parameters make no model.

@@ -1,11 +1,10 @@
 //! Tuning the sensor model: the parameters under which the map explains the truth best.
 //!
-//! Section 3 of Stachniss & Burgard (2003), last paragraph: the maximum of the likelihood of
-//! the true coverages, by local search: [`fit`], to [`Example`]s, along each free [`Axis`].
-//! [`compare`] measures how other methods explain the truth, tuned alike by [`tune`].
+//! Section 3 of Stachniss & Burgard (2003), last paragraph: [`fit`] seeks the maximum of the
+//! likelihood of the true coverages of [`Example`]s, by local search along each free [`Axis`].
+//! [`compare`] measures how well other methods explain the truth, tuned alike by [`tune`].
 //!
-//! This crate knows nothing of simulated worlds and of files: the truth is given, cell by
-//! cell.
+//! This crate knows neither simulated worlds nor files: the caller gives the truth, cell by cell.
 //!
 //! # Units
 //! Metres, radians, nats.

@@ -1,4 +1,4 @@
-//! The methods that are compared: ours, three baselines, and constants.
+//! The methods that are compared: the coverage map, three baselines, and constants.
 
 mod beta;
 mod crm;
@@ -22,7 +22,7 @@ pub struct LogOdds {
     pub hit: f64,
     /// Probability of "occupied" for a cell that a beam passes through.
     pub miss: f64,
-    /// The same for a beam without an echo.
+    /// Probability of "occupied" for a cell that a beam without an echo passes through.
     pub no_echo: f64,
     /// The smallest probability of "occupied": the lower clamp.
     pub clamp_low: f64,
@@ -51,7 +51,7 @@ impl LogOdds {
     }
 }
 
-/// What a method does with a reading.
+/// Update of a method by a reading.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Update {
     /// The coverage map: Eq. (8) to (10).
@@ -59,44 +59,44 @@ pub enum Update {
     /// An occupancy grid \[Moravec & Elfes 1985\]: p(occupied) stands at coverage 1, the
     /// rest at 0.
     LogOdds(LogOdds),
-    /// Hits and passes are counted, with a Beta posterior.
+    /// Counts of hits and passes, with a Beta posterior.
     BetaCounting(BetaCounting),
     /// The forward update of confidence-rich mapping \[Agha-mohammadi et al. 2019\].
     Crm(Crm),
-    /// The coverage map, read with a prior that is not uniform: this share of it is, and the
-    /// rest is coverage 0. Building a map needs the uniform one, Eq. (6), but where most of the
-    /// world is free, whoever reads it may know.
+    /// The coverage map, read with a prior that is not uniform: this share of it is, and the rest
+    /// is coverage 0. The map is built with the uniform one, Eq. (6), but the reader may know that
+    /// most of the world is free.
     CoverageWithPrior(f64),
-    /// No reading counts: all mass at this coverage, or, if it is between two bins, divided
-    /// among them such that it is the mean.
+    /// A constant, whatever the readings: all mass at this coverage or, if it is between two bins,
+    /// divided among them with this mean.
     Constant(f64),
 }
 
-/// A method: how the scans of an example become posteriors of its cells.
+/// A method that turns the scans of an example into posteriors of its cells.
 ///
-/// All methods see the same scans and cells, and those whose cells depend on others the same body
-/// evidence, by the same `footprint`, `usable_range`,
-/// `no_echo.range` and `behind` of `model`. Of the rest of `model` every method uses `bins`,
-/// and the coverage map uses all.
+/// All methods see the same scans and cells, by the same `footprint`, `usable_range`,
+/// `no_echo.range` and `behind` of `model`. Methods whose cells depend on others see the same body
+/// evidence as well. Of the rest of `model` every method uses `bins`, and the coverage map uses
+/// all.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Method {
-    /// The sensor model, of which the baselines use the footprint.
+    /// The sensor model; the baselines use its footprint.
     pub model: ModelParameters,
-    /// What is done with a reading.
+    /// Update by a reading.
     pub update: Update,
 }
 
 impl Method {
-    /// The constant that is the mean true coverage of the partial cells of some examples; .5
-    /// if there are none.
+    /// Creates the constant that is the mean true coverage of the partial cells of some examples;
+    /// .5 if there are none.
     pub fn training_mean(model: ModelParameters, examples: &[Example]) -> Self {
         let partial = || truths(examples).filter(|c| Class::of(*c) == Class::Partial);
         let mean = partial().sum::<f64>() / partial().count() as f64;
         Self { model, update: Update::Constant(if mean.is_finite() { mean } else { 0.5 }) }
     }
 
-    /// The sensor model of an example, if this method is one for it.
+    /// Returns the sensor model of an example, if this method is one for it.
     ///
     /// # Errors
     /// If a parameter is out of its interval or does not fit the example.
@@ -112,9 +112,9 @@ impl Method {
         SensorModel::new(&self.model, &example.ring, example.grid.resolution())
     }
 
-    /// The posterior over the bins of every cell of the truth, in its order. It sums to 1. A
-    /// cell that no reading touched is uniform (but for the constants), and so is one outside
-    /// of the grid.
+    /// Returns the posterior over the bins of every cell of the truth, in its order. Each posterior
+    /// sums to 1. A cell that no reading touched is uniform (but for the constants), and so is one
+    /// outside of the grid.
     ///
     /// # Errors
     /// As [`Method::check`].
@@ -164,7 +164,7 @@ impl Method {
         })
     }
 
-    /// [`Method::posteriors`] of some examples, which are evaluated in parallel.
+    /// Returns [`Method::posteriors`] of some examples, which are evaluated in parallel.
     pub(crate) fn posteriors_of(
         &self,
         examples: &[Example],
@@ -173,13 +173,14 @@ impl Method {
     }
 }
 
-/// The prior probability of a bin: `share` is uniform over the bins, the rest is coverage 0.
+/// Returns the prior probability of a bin: `share` is uniform over the bins, the rest is
+/// coverage 0.
 fn prior_probability(share: f64, bin: usize, bins: usize) -> f64 {
     let even = share / bins as f64;
     if bin == 0 { 1.0 - share + even } else { even }
 }
 
-/// A posterior that had a uniform prior, as it would be with that of [`prior_probability`].
+/// Converts a posterior with a uniform prior to one with that of [`prior_probability`].
 fn with_prior(mut posterior: Vec<f64>, share: f64) -> Vec<f64> {
     let bins = posterior.len();
     posterior.iter_mut().enumerate().for_each(|(b, p)| *p *= prior_probability(share, b, bins));
@@ -188,8 +189,8 @@ fn with_prior(mut posterior: Vec<f64>, share: f64) -> Vec<f64> {
     posterior
 }
 
-/// A coverage as a distribution with that mean, on the two nearest of `levels` evenly spaced
-/// coverages from 0 to 1, which are all bins: 2, the ends, or all `bins`.
+/// Returns a distribution with the mean `coverage`, on the two nearest of `levels` evenly spaced
+/// coverages from 0 to 1. The levels are bins: 2, the ends, or all `bins`.
 fn split(coverage: f64, levels: usize, bins: usize) -> Vec<f64> {
     let step = (bins - 1) / (levels - 1);
     let mut p = vec![0.0; bins];

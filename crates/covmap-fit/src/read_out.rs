@@ -5,13 +5,15 @@ use crate::{Class, Weighting};
 use covmap::{MAX_BINS, ReadOut, lower_bin};
 use rayon::prelude::*;
 
-/// λ: how much weights that are not those of the plain read-out must gain \[nats\].
+/// λ: penalty of weights that differ from those of the plain read-out \[nats\].
 const SHRINKAGE: f64 = 1e-3;
 
-/// Not more cells are looked at: every second, third … of more is enough, and memory is finite.
+/// Largest number of cells in use: of more cells every second, third … is enough, and memory is
+/// finite.
 const MOST_CELLS: usize = 400_000;
 
-/// The number of cells that one thread sums up: the sum is a function of the cells.
+/// The number of cells that one thread sums up. It is fixed, so that the sum is a function of the
+/// cells.
 const CHUNK: usize = 1024;
 
 /// Fits a read-out to posteriors of `bins` bins, each with the true coverage of its cell:
@@ -20,10 +22,10 @@ const CHUNK: usize = 1024;
 /// max  Σ_i w_i Σ_j y_ij · log p'_j(i)  −  λ·‖W − I‖²          w_i by `weighting`, Σ w = 1
 /// ```
 ///
-/// y_i is the truth, divided among two bins where it lies between them; λ = .001, so that what
-/// the data do not say stays as the map has it. The likelihood of a multinomial logistic
-/// regression is concave, so that there is one maximum, wherever the search begins; with few
-/// truths the plain read-out comes out. Without cells it is the plain one.
+/// y_i is the truth, divided among two bins where it lies between them. λ = .001 keeps the read-out
+/// as the map has it where the data say nothing. The likelihood of a multinomial logistic
+/// regression is concave, so that there is one maximum, wherever the search begins. Few truths lead
+/// to nearly the plain read-out, and no cells to exactly this.
 ///
 /// # Panics
 /// Unless `bins` is in 2..=64 and the posteriors have as many.
@@ -49,7 +51,7 @@ struct Regression {
     cells: Vec<Truth>,
 }
 
-/// The truth of a cell: (1 − t) of it in a bin, t in the next; and what it weighs.
+/// The truth of a cell: (1 − t) of it in a bin, t in the next; and its weight.
 #[derive(Clone, Copy)]
 struct Truth {
     bin: usize,
@@ -71,14 +73,14 @@ impl Regression {
         Self { bins, clues, cells: cells.iter().zip(weights).map(truth).collect() }
     }
 
-    /// Where the search begins: b = 0, W = I.
+    /// Returns the start of the search: b = 0, W = I.
     fn plain(&self) -> Vec<f64> {
         let mut place = vec![0.0; self.bins * (self.bins + 1)];
         (0..self.bins).for_each(|j| place[self.bins + j * (self.bins + 1)] = 1.0);
         place
     }
 
-    /// The likelihood of some cells, and its gradient.
+    /// Returns the likelihood of some cells, and its gradient.
     fn of_cells(&self, place: &[f64], clues: &[f64], cells: &[Truth]) -> (f64, Vec<f64>) {
         let n = self.bins;
         let (bias, weights) = place.split_at(n);

@@ -1,23 +1,23 @@
-//! Whether a map knows how right it is.
+//! The reliability of a map.
 
 use crate::{ByClass, Class};
 use covmap::{Histogram, bin_coverage};
 use covmap_statistics::central;
 use serde::Serialize;
 
-/// How many levels, from 1/20 to 1.
+/// The number of levels, from 1/20 to 1.
 const LEVELS: u32 = 20;
-/// How many bands of entropy.
+/// The number of bands of entropy.
 const BANDS: usize = 12;
 
-/// What posteriors say of themselves, against the truth.
+/// Confidence of posteriors, compared with the truth.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Reliability {
     /// For each class, pairs: a level, and the share of truths in the central interval of this
-    /// level, in the mean over the randomised transform ([`central`]). On the diagonal for all
-    /// cells together, if truths are drawn from the posteriors. (A class is chosen by the truth,
-    /// so that not even the true posterior need be on it: free cells, at one end of the scale, lie
-    /// below or above as their posteriors reach out.)
+    /// level, in the mean over the randomised transform ([`central`]). The pairs lie on the
+    /// diagonal for all cells together, if truths are drawn from the posteriors. (The truth chooses
+    /// the class, so that even the true posterior need not be on it: free cells, at one end of the
+    /// scale, lie below or above as their posteriors reach out.)
     pub central: ByClass<Vec<(f64, f64)>>,
     /// Cells by their entropy, from sure to unsure; bands without cells are left out.
     pub by_entropy: Vec<EntropyBand>,
@@ -28,16 +28,16 @@ pub struct Reliability {
 pub struct EntropyBand {
     /// Their mean entropy \[nats\].
     pub entropy: f64,
-    /// How many.
+    /// Number of cells.
     pub cells: usize,
     /// The mean absolute error of their modes.
     pub error: f64,
-    /// What their posteriors expect that to be: the mean of Σ p_k·|c_k − mode|.
+    /// The error that their posteriors expect: the mean of Σ p_k·|c_k − mode|.
     pub expected_error: f64,
 }
 
 impl Reliability {
-    /// Of some posteriors, each with the true coverage of its cell.
+    /// Measures some posteriors, each with the true coverage of its cell.
     pub fn of<'a>(cells: impl IntoIterator<Item = &'a (Vec<f64>, f64)>) -> Self {
         let mut held: ByClass<(usize, Vec<f64>)> =
             ByClass::from_fn(|_| (0, vec![0.0; LEVELS as usize]));
@@ -81,7 +81,7 @@ fn levels() -> impl Iterator<Item = f64> {
     (1..=LEVELS).map(|level| f64::from(level) / f64::from(LEVELS))
 }
 
-/// Which band an entropy is in: they divide what it can be, 0 to ln n, evenly.
+/// Returns the band of an entropy: the bands divide 0 to ln n evenly.
 fn band(entropy: f64, bins: usize) -> usize {
     let place = entropy / libm::log(count(bins)) * count(BANDS);
     #[allow(clippy::cast_possible_truncation, reason = "saturates")]

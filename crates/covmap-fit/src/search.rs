@@ -2,14 +2,14 @@
 
 use std::ops::ControlFlow;
 
-/// When the search ends.
+/// Steps and end of the search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SearchSettings {
     /// The first step along every axis, as a share of its interval.
     pub first_step: f64,
-    /// The search is done when the steps along all axes are below this.
+    /// The search ends when the steps along all axes are below this.
     pub last_step: f64,
-    /// No more evaluations than this.
+    /// The largest number of evaluations.
     pub evaluations: usize,
 }
 
@@ -19,16 +19,16 @@ impl Default for SearchSettings {
     }
 }
 
-/// One evaluation on the way.
+/// One evaluation of the search.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Step {
-    /// Where, in the unit cube.
+    /// Its place in the unit cube.
     pub place: Vec<f64>,
     /// The value there; `None` if the place is not allowed.
     pub value: Option<f64>,
 }
 
-/// The higher of two results; the first, if they are equal.
+/// Returns the higher of two results; the first, if they are equal.
 pub(crate) fn higher(
     best: Option<(Vec<f64>, f64)>,
     found: Option<(Vec<f64>, f64)>,
@@ -39,10 +39,10 @@ pub(crate) fn higher(
     }
 }
 
-/// The number of places drawn at random that are tried, since one may not be allowed.
+/// The largest number of places that are drawn at random, since one may not be allowed.
 const DRAWS: usize = 1000;
 
-/// A place in the unit cube that is allowed, drawn at random; `given` if none is found.
+/// Returns a place in the unit cube that is allowed, drawn at random; `given` if none is found.
 pub(crate) fn random_start(
     given: &[f64],
     uniform: &mut impl FnMut() -> f64,
@@ -57,14 +57,14 @@ pub(crate) fn random_start(
 /// place and its value, or `None` if not even the start is allowed.
 ///
 /// # Algorithm
-/// Pattern search with a step for each axis. Axis by axis a step is tried to one side, then
-/// to the other. A step that improves is taken, and the next one along this axis is half as
-/// long again; if neither side improves, it is half as long. After all axes, the way of the
-/// whole round is gone once more, as long as that improves (Hooke and Jeeves, 1961): parameters
-/// that can stand in for each other make narrow ridges, along no axis. This needs no gradient, keeps
-/// to bounds and to constraints that are only known by asking, and does not mind that
-/// parameters such as the distance behind act in steps, cell by cell: that is why it stands
-/// here instead of a simplex or a quasi-Newton method.
+/// Pattern search with a step for each axis (Hooke and Jeeves, 1961). Axis by axis the search tries
+/// a step to one side, then to the other. It takes a step that improves, and the next one along
+/// this axis is half as long again; if neither side improves, it is half as long. After all axes
+/// the search repeats the way of the whole round, as long as that improves: parameters that can
+/// stand in for each other make narrow ridges, along no axis. The method needs no gradient, and
+/// keeps to bounds and to constraints that are only known by asking. It also tolerates parameters
+/// such as the distance behind, which act in steps, cell by cell. For these reasons it is used
+/// instead of a simplex or a quasi-Newton method.
 ///
 /// Every evaluation is reported to `report`, which may end the search.
 pub fn maximise(

@@ -1,4 +1,4 @@
-//! Tuning any method, all of them with the same budget.
+//! Tuning of any method, with the same budget for all.
 
 use crate::compare::table_of;
 use crate::search::{SearchSettings, higher, maximise, random_start};
@@ -50,7 +50,7 @@ pub enum MethodParameter {
 }
 
 impl MethodParameter {
-    /// Where the parameter stands; `None` if the method has no such parameter.
+    /// Returns the place of the parameter; `None` if the method has no such parameter.
     fn place(self, update: &mut Update) -> Option<&mut f64> {
         match (self, update) {
             (Self::Hit, Update::LogOdds(odds)) => Some(&mut odds.hit),
@@ -75,7 +75,7 @@ impl MethodParameter {
         }
     }
 
-    /// Its value; `None` if the method has no such parameter.
+    /// Returns its value; `None` if the method has no such parameter.
     pub fn get(self, method: &Method) -> Option<f64> {
         match self {
             Self::Model(parameter) => parameter.get(&method.model),
@@ -83,7 +83,7 @@ impl MethodParameter {
         }
     }
 
-    /// Sets it; nothing happens if the method has no such parameter.
+    /// Sets its value; does nothing if the method has no such parameter.
     pub fn set(self, method: &mut Method, value: f64) {
         match self {
             Self::Model(parameter) => parameter.set(&mut method.model, value),
@@ -97,9 +97,11 @@ impl MethodParameter {
 }
 
 impl Update {
-    /// The axes of a baseline: all its own parameters, and those of the footprint that the
-    /// coverage map's fit moves as well, in the same intervals. None for the coverage map
-    /// but its prior, since its axes stand in the file of its fit, and for a constant.
+    /// Returns the axes of a baseline: all its own parameters, and those of the footprint that the
+    /// coverage map's fit moves as well, in the same intervals.
+    ///
+    /// A constant has none. The coverage map has none but its prior, since its axes stand in the
+    /// file of its fit.
     pub fn axes(&self) -> Vec<Axis<MethodParameter>> {
         use MethodParameter as P;
         let own: &[(P, f64, f64)] = match self {
@@ -139,20 +141,20 @@ impl Update {
     }
 }
 
-/// How a method is tuned.
+/// Settings of the tuning of a method.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TuneSettings {
-    /// What the likelihood is the mean of.
+    /// Weighting of the cells in the mean likelihood.
     pub weighting: Weighting,
     /// Whether the likelihood is that of the output after a calibration table, fitted to the
     /// same examples at every evaluation: for a method that will have such a table.
     pub calibrated: bool,
-    /// The budget: this many evaluations are made, no more and no fewer. When a search ends
-    /// before, another one begins at a place drawn at random.
+    /// The budget: the exact number of evaluations. When a search ends before, another one begins
+    /// at a place drawn at random.
     pub evaluations: usize,
 }
 
-/// What tuning came to.
+/// Result of a tuning.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Tuned {
     /// The best method.
@@ -160,12 +162,12 @@ pub struct Tuned {
     /// Its objective on the examples: mean log-likelihood by the settings' weighting
     /// \[nats\].
     pub log_likelihood: f64,
-    /// How many evaluations were made: the budget, or 0 without axes, or fewer if it was
-    /// stopped.
+    /// Number of evaluations: the budget, or 0 without axes, or fewer if the caller ended the
+    /// tuning.
     pub evaluations: usize,
 }
 
-/// Why a method cannot be tuned.
+/// Error of a method that cannot be tuned.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum TuneError {
     /// There is nothing to tune to.
@@ -182,13 +184,14 @@ pub enum TuneError {
     Begin(ModelError),
 }
 
-/// Tunes a method to examples, as [`crate::fit`] does the sensor model: the largest mean
-/// log-likelihood of the true coverage of their cells. The first search begins at the given
-/// parameters; `uniform` draws uniform numbers in \[0, 1) for the starts of the others.
+/// Tunes a method to examples, as [`crate::fit`] fits the sensor model.
 ///
-/// `report` sees the objective at each evaluation, and may end it: the best so far is then
-/// the result. The examples are evaluated in parallel; the result is a function of the
-/// arguments.
+/// The tuning seeks the largest mean log-likelihood of the true coverage of their cells. The first
+/// search begins at the given parameters; `uniform` draws uniform numbers in \[0, 1) for the starts
+/// of the others.
+///
+/// `report` sees the objective at each evaluation, and may end the tuning: the best so far is then
+/// the result. The examples are evaluated in parallel; the result is a function of the arguments.
 ///
 /// # Errors
 /// If there are no cells, an axis is impossible or not one of the method's, or the parameters
@@ -256,8 +259,8 @@ pub fn tune(
     Ok(Tuned { method: method(&place), log_likelihood, evaluations: made })
 }
 
-/// How well a method explains all examples together, cell by cell: with its own posteriors,
-/// or `calibrated`, after a table that is fitted to these examples.
+/// Scores a method on all examples together, cell by cell: by its own posteriors or, if
+/// `calibrated`, after a table that is fitted to these examples.
 ///
 /// # Errors
 /// If a parameter is out of its interval or does not fit an example.

@@ -1,28 +1,28 @@
-//! What an objective is the mean of.
+//! The weighting of cells in an objective.
 
 use crate::{ByClass, Class, ExampleScore};
 use serde::{Deserialize, Serialize};
 
-/// What the objective is the mean of.
+/// Weighting of cells in the mean of the objective.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Weighting {
-    /// All cells alike.
+    /// All cells count alike.
     Cells,
-    /// The classes alike: cells that are free, partly covered, and solid, as far as there are
-    /// any. Indoors most cells are free, and few are solid and in sight: alike, cells let a fit
-    /// buy a better likelihood of the others with walls that are not there.
+    /// The classes count alike: cells that are free, partly covered, and solid, as far as there are
+    /// any. Indoors most cells are free, and few are solid and in sight: if cells counted alike, a
+    /// fit could buy a better likelihood of the others by forgetting walls.
     Classes,
 }
 
 impl Weighting {
-    /// The mean log-likelihood \[nats\].
+    /// Returns the mean log-likelihood \[nats\].
     pub fn objective(self, score: &ExampleScore) -> f64 {
         let is_there = |class| score.get(Some(class)).cells > 0;
         let mean = self.mean(is_there, |class| Some(score.get(class).log_likelihood));
         mean.unwrap_or(0.0)
     }
 
-    /// What each cell weighs, by its class; all of them together 1.
+    /// Returns the weight of each cell, by its class; the weights sum to 1.
     pub(crate) fn weights(
         self,
         cells: impl ExactSizeIterator<Item = Class> + Clone,
@@ -38,8 +38,8 @@ impl Weighting {
         cells.map(move |class| each(class) / total)
     }
 
-    /// The mean of what `of` says of all cells (`None`) or of the classes that are there;
-    /// `None` if it says nothing of one of them, or there are none.
+    /// Returns the mean of `of` over all cells (`None`) or over the classes that are there; `None`
+    /// if `of` has no value for one of them, or there are none.
     pub(crate) fn mean(
         self,
         is_there: impl Fn(Class) -> bool,

@@ -14,7 +14,7 @@ use nalgebra::{Isometry2, Point2, Vector2};
 use proptest::prelude::*;
 use std::ops::ControlFlow;
 
-/// A generator of uniform numbers, good enough for tests (splitmix64).
+/// Returns a generator of uniform numbers, good enough for tests (splitmix64).
 fn uniform(mut state: u64) -> impl FnMut() -> f64 {
     move || {
         state = state.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -25,8 +25,8 @@ fn uniform(mut state: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// The range of a cone in an empty room: the nearest point of its walls that one of some rays
-/// meets, with noise.
+/// Returns the range of a cone in an empty room: the nearest point of its walls that one of some
+/// rays meets, with noise.
 fn range(room: (Point2<f64>, Point2<f64>), sensor: &Isometry2<f64>, u: f64) -> Range {
     let ray = |i: i32| {
         let angle = sensor.rotation.angle() + 0.02 * f64::from(i);
@@ -41,7 +41,7 @@ fn range(room: (Point2<f64>, Point2<f64>), sensor: &Isometry2<f64>, u: f64) -> R
     Range::Echo((-8..=8).map(ray).fold(f64::INFINITY, f64::min) + 0.06 * (u - 0.5))
 }
 
-/// A robot crosses a room whose walls cut cells.
+/// Returns the example of a robot that crosses a room whose walls cut cells.
 fn example(size: (f64, f64), seed: u64) -> Example {
     let room = (Point2::new(0.53, 0.57), Point2::new(0.53 + size.0, 0.57 + size.1));
     let extent = Vector2::new(size.0, size.1).add_scalar(1.0);

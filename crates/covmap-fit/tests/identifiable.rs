@@ -11,7 +11,7 @@ use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
 use std::ops::ControlFlow;
 
-/// Uniform numbers in \[0, 1): SplitMix64.
+/// Returns uniform numbers in \[0, 1): SplitMix64.
 fn random(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
@@ -24,7 +24,7 @@ fn random(seed: u64) -> impl FnMut() -> f64 {
     }
 }
 
-/// A scan of random ranges, and truths drawn from the posteriors that a model makes of it.
+/// Returns a scan of random ranges, and truths drawn from the posteriors of a model for it.
 fn drawn_example(known: &ModelParameters, uniform: &mut impl FnMut() -> f64) -> Example {
     let grid = Grid::new(Point2::new(-3.45, -3.45), 0.1, 69, 69).unwrap();
     let ranges = (0..24).map(|_| Range::Echo(0.4 + 2.5 * uniform())).collect();

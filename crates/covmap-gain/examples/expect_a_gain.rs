@@ -1,5 +1,5 @@
-//! What is expected to be learnt at two places of a corridor, by the equations as printed and as it
-//! is cached.
+//! Prints the expected information gain at two places, by the equations as printed and from the
+//! cache.
 //!
 //! ```text
 //! cargo run -p covmap-gain --example expect_a_gain

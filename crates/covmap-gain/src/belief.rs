@@ -1,10 +1,10 @@
-//! The copy of the map that sight and gains are computed from, laid out for the beams of many
-//! view-points. It knows nothing of how they are computed.
+//! The copy of the map from which sight and gains are computed, laid out for the beams of many
+//! view-points. It does not depend on how they are computed.
 //!
-//! What is read along beams lies in *bordered rasters*: rasters of the grid with a border as wide as
-//! a stencil, so that a stencil's cell is at a constant offset from every view-point, inside of the
-//! grid or not. What is read cell by cell lies in blocks of [`LANES`] neighbouring cells of a row:
-//! histograms bin by bin, so that a bin of all cells of a block is one vector.
+//! Values along beams lie in *bordered rasters*: rasters of the grid with a border as wide as a
+//! stencil, so that a stencil's cell is at a constant offset from every view-point, inside of the
+//! grid or not. Values that are read cell by cell lie in blocks of [`LANES`] neighbouring cells of
+//! a row: histograms bin by bin, so that a bin of all cells of a block is one vector.
 
 use crate::memory::Size;
 use crate::numbers::{PAD, to_f32};
@@ -13,19 +13,19 @@ use crate::{InformationGain, RangePrediction, Stencil};
 use covmap::lanes::{LANES, Lanes};
 use covmap::{Cell, CoverageMap, Grid, MAX_BINS, bin_coverage};
 
-/// The copy of the map, and which cells are reasons to measure.
+/// The copy of the map, and the limits of the cells that are reasons to measure.
 #[derive(Debug, Clone)]
 pub(crate) struct Belief {
     grid: Grid,
     bins: usize,
     border: usize,
-    /// How much a cell reflects, by its code.
+    /// Reflection of a cell, by its code.
     reflection_of: Vec<f64>,
     /// Bordered: the bin of the cell's mode, or one of the three codes past all bins.
     codes: Vec<u8>,
-    /// Bordered: ρ, how much the cell reflects.
+    /// Bordered: ρ, the reflection of the cell.
     reflections: Vec<f64>,
-    /// Bordered: how many of the [`LANES`] cells from here on reflect anything.
+    /// Bordered: the number of the [`LANES`] cells from here on that reflect anything.
     reflecting: Vec<u8>,
     /// Bordered: the expected coverage, where gains are predicted by it; else empty.
     means: Vec<f64>,
@@ -42,12 +42,13 @@ pub(crate) struct Belief {
     h_hat: Vec<f32>,
     /// Bordered: the expected coverage of a known cell, [`NOT_KNOWN`] of another one of the grid.
     expected: Vec<f32>,
-    /// The blocks with changes since they were last asked for, and which these are.
+    /// The blocks with changes since the last [`take_changed`](Self::take_changed), and a mark for
+    /// each block.
     changed: Vec<usize>,
     is_changed: Vec<bool>,
 }
 
-/// In place of an expected coverage: no reading has touched the cell.
+/// Value in place of an expected coverage: no reading has touched the cell.
 pub(crate) const NOT_KNOWN: f32 = -1.0;
 
 /// The histograms of [`LANES`] neighbouring cells of a row, before a reading.
@@ -59,13 +60,13 @@ pub(crate) struct Prior<'a> {
 }
 
 impl<'a> Prior<'a> {
-    /// h of a bin, of each cell.
+    /// Returns h of a bin, of each cell.
     #[inline(always)]
     pub(crate) fn h(&self, bin: usize) -> &'a Lanes {
         lanes_at(self.h, bin * self.stride)
     }
 
-    /// ĥ = h·(log h + H) of a bin, with the entropy H of h, of each cell.
+    /// Returns ĥ = h·(log h + H) of a bin, with the entropy H of h, of each cell.
     #[inline(always)]
     pub(crate) fn h_hat(&self, bin: usize) -> &'a Lanes {
         lanes_at(self.h_hat, bin * self.stride)
@@ -80,25 +81,26 @@ pub(crate) struct BlockPrior<'a> {
 }
 
 impl<'a> BlockPrior<'a> {
-    /// That of histograms that lie bin by bin, one `stride` from the next; all can change.
+    /// Creates the prior of histograms that lie bin by bin, one `stride` from the next; all can
+    /// change.
     pub(crate) fn of(h: &'a [f32], h_hat: &'a [f32], stride: usize) -> Self {
         Self { prior: Prior { h, h_hat, stride }, changeable: &[1.0; LANES] }
     }
 
-    /// [`Prior::h`].
+    /// Returns [`Prior::h`].
     #[inline(always)]
     pub(crate) fn h(&self, bin: usize) -> &'a Lanes {
         self.prior.h(bin)
     }
 
-    /// [`Prior::h_hat`].
+    /// Returns [`Prior::h_hat`].
     #[inline(always)]
     pub(crate) fn h_hat(&self, bin: usize) -> &'a Lanes {
         self.prior.h_hat(bin)
     }
 }
 
-/// The [`LANES`] numbers from a place on.
+/// Returns the [`LANES`] numbers from a place on.
 #[inline(always)]
 pub(crate) fn lanes_at(numbers: &[f32], place: usize) -> &Lanes {
     let Some(lanes) = numbers[place..].first_chunk() else { panic!("rows are padded") };
@@ -156,32 +158,32 @@ impl Belief {
         belief
     }
 
-    /// About how many bytes this takes.
+    /// Estimates the bytes of the belief.
     pub(crate) fn bytes(size: &Size) -> f64 {
         // Codes, limits, reflections, how many reflect, and expected coverages, perhaps twice.
         const BORDERED: f64 = 1.0 + 4.0 + 8.0 + 1.0 + 4.0 + 8.0;
-        // Of a block entropies, whether it is changeable, and that it changed.
+        // Of a block: entropies, whether its cells are changeable, and whether it changed.
         const BLOCK: f64 = 128.0 + 9.0;
         let histograms = 8.0 * size.bins * size.padded();
         BORDERED * size.bordered() + BLOCK * size.blocks() + histograms
     }
 
-    /// The index of a cell in the bordered rasters, by its row-major index.
+    /// Returns the index of a cell in the bordered rasters, by its row-major index.
     #[inline(always)]
     pub(crate) fn bordered(&self, index: usize) -> usize {
         let (x, y) = (index % self.grid.width(), index / self.grid.width());
         (y + self.border) * self.raster_width() + x + self.border
     }
 
-    /// Row and column of a cell of the grid, by its index in the bordered rasters.
+    /// Returns the row and column of a cell of the grid, by its index in the bordered rasters.
     #[inline(always)]
     pub(crate) fn place(&self, bordered: usize) -> (usize, usize) {
         let width = self.raster_width();
         (bordered / width - self.border, bordered % width - self.border)
     }
 
-    /// Takes over a cell's posterior. Returns whether what it reflects, or whether it can
-    /// change at all, is different now.
+    /// Takes over a cell's posterior. Returns whether the cell's reflection, or its ability to
+    /// change, is different now.
     pub(crate) fn update(&mut self, map: &CoverageMap, cell: Cell) -> bool {
         let Some(index) = self.grid.index(cell) else { return false };
         let mut posterior = [0.0; MAX_BINS];
@@ -238,13 +240,13 @@ impl Belief {
         }
     }
 
-    /// Where the histograms of a row begin.
+    /// Returns the place at which the histograms of a row begin.
     fn row(&self, y: usize) -> usize {
         y * self.bins * padded(self.grid.width())
     }
 
-    /// The histograms of the cells from column `x` of row `y` on, which may begin up to [`PAD`]
-    /// columns before the first one, and end as far past the last.
+    /// Returns the histograms of the cells from column `x` of row `y` on. They may begin up to
+    /// [`PAD`] columns before the first one, and end as far past the last.
     #[inline(always)]
     pub(crate) fn prior_at(&self, y: usize, x: isize) -> Prior<'_> {
         let place = self.row(y) + PAD.wrapping_add_signed(x);
@@ -252,12 +254,12 @@ impl Belief {
         Prior { h: &self.h[place..], h_hat: &self.h_hat[place..], stride }
     }
 
-    /// Expected coverages, a bordered raster.
+    /// Returns the expected coverages, a bordered raster.
     pub(crate) fn expected(&self) -> &[f32] {
         &self.expected
     }
 
-    /// The blocks with changes since this was last asked, in ascending order.
+    /// Returns the blocks with changes since the last call, in ascending order.
     pub(crate) fn take_changed(&mut self) -> Vec<usize> {
         let mut changed = std::mem::take(&mut self.changed);
         changed.iter().for_each(|block| self.is_changed[*block] = false);
@@ -265,53 +267,54 @@ impl Belief {
         changed
     }
 
-    /// ρ of all cells, a bordered raster.
+    /// Returns ρ of all cells, a bordered raster.
     pub(crate) fn reflections(&self) -> &[f64] {
         &self.reflections
     }
 
-    /// How much cells reflect where gains are predicted by expected coverages, a bordered raster;
-    /// empty where they are not.
+    /// Returns the reflections of cells where gains are predicted by expected coverages, a bordered
+    /// raster; empty where they are not.
     pub(crate) fn means(&self) -> &[f64] {
         &self.means
     }
 
-    /// Whether any of the [`LANES`] cells from an index of the bordered rasters on reflects.
+    /// Returns whether any of the [`LANES`] cells from an index of the bordered rasters on
+    /// reflects.
     #[inline(always)]
     pub(crate) fn any_reflects(&self, bordered: usize) -> bool {
         self.reflecting[bordered] > 0
     }
 
-    /// Up to which distance each cell is a reason to measure \[m\], a bordered raster.
+    /// Returns the distances up to which cells are reasons to measure \[m\], a bordered raster.
     pub(crate) fn limits(&self) -> &[f32] {
         &self.limits
     }
 
-    /// Whether a cell is a reason to measure from so far away \[m\], by its row-major index.
+    /// Returns whether a cell is a reason to measure from a distance \[m\], by its row-major index.
     #[inline(always)]
     pub(crate) fn is_reason(&self, index: usize, distance: f32) -> bool {
         distance <= self.limits[self.bordered(index)]
     }
 
-    /// Sets a cell's limit; returns whether it is another one now.
+    /// Sets a cell's limit; returns whether it changed.
     pub(crate) fn set_limit(&mut self, index: usize, limit: f32) -> bool {
         let bordered = self.bordered(index);
         let old = std::mem::replace(&mut self.limits[bordered], limit);
         old.to_bits() != limit.to_bits()
     }
 
-    /// A cell's entropy by its row-major index \[nats\].
+    /// Returns a cell's entropy by its row-major index \[nats\].
     pub(crate) fn entropy(&self, index: usize) -> f32 {
         let (block, lane) = self.block_of(index);
         self.entropies[block][lane]
     }
 
-    /// The block that holds a cell, and the cell's lane.
+    /// Returns the block that holds a cell, and the cell's lane.
     fn block_of(&self, index: usize) -> (usize, usize) {
         group_and_lane(self.grid.width(), index)
     }
 
-    /// The histograms of a block.
+    /// Returns the histograms of a block.
     #[inline(always)]
     pub(crate) fn prior(&self, block: usize) -> BlockPrior<'_> {
         let per_row = groups_per_row(&self.grid);
@@ -320,18 +323,18 @@ impl Belief {
         BlockPrior { prior, changeable: &self.changeable[block] }
     }
 
-    /// How many columns and rows surround the grid in the bordered rasters.
+    /// Returns the number of columns and rows around the grid in the bordered rasters.
     pub(crate) fn border(&self) -> usize {
         self.border
     }
 
-    /// How far apart two rows lie in the bordered rasters.
+    /// Returns the distance of two rows in the bordered rasters.
     pub(crate) fn raster_width(&self) -> usize {
         self.grid.width() + 2 * self.border
     }
 }
 
-/// The columns of a padded row with a number of cells.
+/// Returns the number of columns of a padded row with a number of cells.
 pub(crate) fn padded(width: usize) -> usize {
     width.next_multiple_of(LANES) + 2 * PAD
 }

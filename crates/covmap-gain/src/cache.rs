@@ -1,4 +1,5 @@
-//! What each beam of each view-point sees and gains, kept until a change of the map makes it stale.
+//! Sight and gains of each beam of each view-point, kept until a change of the map makes them
+//! stale.
 
 mod answers;
 mod rows;
@@ -21,30 +22,30 @@ use rayon::prelude::*;
 use rows::{AskOutcomes, RefreshBounds, RefreshSight, average, up_to_date};
 use staleness::{BeamState, CellChange, GroupState, Onlookers};
 
-/// The fast evaluation of E\[I\] is within this of the literal one, in units of the largest absolute
-/// gain of the view-points that are compared.
+/// Largest difference of the fast evaluation of E\[I\] from the literal one, in units of the
+/// largest absolute gain of the view-points that are compared.
 pub const GAIN_TOLERANCE: f64 = 1e-5;
 
-/// The most outcomes of beams of groups that are evaluated together, if all are likely: this bounds
-/// the memory of their probabilities, 64 bytes each.
+/// The largest number of outcomes of beams of groups that are evaluated together, if all are
+/// likely. It bounds the memory of their probabilities, 64 bytes each.
 const OUTCOMES_TOGETHER: usize = 1 << 22;
 
-/// The fewest rows of groups, or groups, that one thread works at: to wake another one up takes
-/// longer than to look through them.
+/// The smallest numbers of rows of groups, and of groups, for one thread: waking another one takes
+/// longer than working through them.
 const ROWS_PER_THREAD: usize = 8;
 const GROUPS_PER_THREAD: usize = 4096;
 
-/// A gain may be above its bound by so much, by rounding.
+/// Largest excess of a gain over its bound by rounding.
 const ROUNDING: f32 = 1e-5;
 
-/// What every view-point sees, V(l), and is expected to gain, E\[I(l)\].
+/// Sight V(l) and expected gain E\[I(l)\] of every view-point.
 ///
 /// View-points are the centres of the cells of a grid, and are given by their row-major index; the
 /// ring of sensors keeps its heading. The cache has a copy of the map, which
-/// [`update`](Self::update) brings up to date cell by cell. A value depends on some of the nearest
-/// cells of its beams only: when one of these changes the value is stale, and it is computed again
-/// when it is next asked for, by one of the `refresh` functions. All other functions answer what was
-/// refreshed since the last change.
+/// [`update`](Self::update) brings up to date cell by cell. A value depends only on some of the
+/// nearest cells of its beams: a change of one of these makes the value stale, and one of the
+/// `refresh` functions computes it again when it is next asked for. All other functions return the
+/// values of the last refresh: the caller refreshes those that it needs after a change.
 #[derive(Debug, Clone)]
 pub struct GainCache {
     grid: Grid,
@@ -55,29 +56,30 @@ pub struct GainCache {
     onlookers: Onlookers,
     /// The stencil's beams.
     beams: Vec<RasterBeam>,
-    /// By group, as all that follows.
+    /// By group, like `mean_gain`.
     groups: Vec<GroupState>,
     /// E\[I(l)\] or an upper bound of it: the average over the beams.
     mean_gain: Vec<[f64; LANES]>,
-    /// For each group for each beam, as all that follows.
+    /// By group and beam, like `in_sight` and `answers`.
     states: Vec<BeamState>,
-    /// V(l): how many cells of the beam are in sight.
+    /// V(l): number of cells of the beam in sight.
     in_sight: Vec<[u16; LANES]>,
-    /// What the beam is expected to tell, or upper bounds of it.
+    /// Expected gain of the beam, or upper bounds of it.
     answers: Vec<BeamAnswer>,
-    /// Which vector registers are used; all give the same bits.
+    /// Vector registers; all kinds give the same bits.
     arch: Arch,
-    /// A gain was met that is above its bound.
+    /// Whether a gain was above its bound.
     exceeded: bool,
-    /// What a cell must be expected to gain to count for a promise.
+    /// Least expected gain of a cell that counts for a promise.
     least_change: f32,
 }
 
 impl GainCache {
-    /// A cache that knows nothing of the map yet. `heading` is the one that the ring keeps \[rad\].
+    /// Creates a cache of an unknown map. `heading` is the one that the ring keeps \[rad\].
     ///
     /// # Errors
-    /// If a beam covers too many cells, or the update predicts nothing that it is asked for.
+    /// If a beam reaches too far or covers too many cells, or if the update cannot predict the
+    /// gain.
     pub fn new(
         model: &SensorModel,
         heading: f64,
@@ -123,15 +125,17 @@ impl GainCache {
         })
     }
 
-    /// The same, with what the entropy of a cell must be expected to fall by \[nats\] to count for a
+    /// Sets the least expected fall of a cell's entropy \[nats\] that counts for a
     /// [promise](Self::promise).
     #[must_use]
     pub fn with_least_change(self, least: f64) -> Self {
         Self { least_change: crate::numbers::to_f32(least), ..self }
     }
 
-    /// About how many bytes a cache takes at most while it is made and asked, with its copy of the
-    /// map: an estimate, mostly too large, to be asked for before there is one.
+    /// Estimates the bytes that a cache takes at most while it is made and asked, with its copy of
+    /// the map.
+    ///
+    /// The estimate is mostly too high, and needs no cache.
     pub fn bytes(model: &SensorModel, grid: &Grid, upkeep: Upkeep) -> u64 {
         // A state, what is in sight, a gain and a promise.
         const GROUP_BEAM: f64 = 12.0 + 32.0 + 64.0 + 64.0;
@@ -146,8 +150,8 @@ impl GainCache {
         whole(own + Belief::bytes(&size) + Evaluator::bytes(&size))
     }
 
-    /// Takes over a cell's posterior. Returns whether what it reflects, or whether it can change
-    /// at all, is different now.
+    /// Takes over a cell's posterior. Returns whether the cell's reflection, or its ability to
+    /// change, is different now.
     pub fn update(&mut self, map: &CoverageMap, cell: Cell) -> bool {
         let Some(index) = self.grid.index(cell) else { return false };
         let reflects_anew = self.belief.update(map, cell);
@@ -159,15 +163,15 @@ impl GainCache {
         reflects_anew
     }
 
-    /// Sets up to which distance a cell is a reason to measure \[m\]. At first it is 0 for all: none
-    /// is a reason.
+    /// Sets the distance up to which a cell is a reason to measure \[m\]. At first it is 0 for all
+    /// cells: none is a reason.
     pub fn set_limit(&mut self, index: usize, limit: f32) {
         if self.belief.set_limit(index, limit) {
             self.onlookers.mark(index, CellChange::Limit);
         }
     }
 
-    /// Sets how much of a reading from a view-point would be new, in \[0, 1\]: at first all of it.
+    /// Sets the novelty of a reading from a view-point, in \[0, 1\]; at first it is 1.
     pub fn set_novelty(&mut self, view_point: usize, novelty: f64) {
         let (width, novelty) = (self.grid.width(), crate::numbers::to_f32(novelty));
         self.evaluator.set_novelty((view_point / width, view_point % width), novelty);
@@ -210,8 +214,10 @@ impl GainCache {
         });
     }
 
-    /// Brings upper bounds of E\[I(l)\] up to date for those of some view-points whose gains are
-    /// not, and V(l). Where there are no bounds the gains themselves.
+    /// Brings V(l) of some view-points up to date, and upper bounds of E\[I(l)\] where gains are
+    /// stale.
+    ///
+    /// Without bounds it refreshes the gains themselves.
     pub fn refresh_bounds(&mut self, wanted: &ViewPoints) {
         if !self.evaluator.has_bound() {
             return self.refresh_gains(wanted);
@@ -252,7 +258,7 @@ impl GainCache {
         );
     }
 
-    /// Brings E\[I(l)\] up to date for some view-points, and V(l).
+    /// Brings E\[I(l)\] and V(l) of some view-points up to date.
     pub fn refresh_gains(&mut self, wanted: &ViewPoints) {
         if self.upkeep == Upkeep::OnDemand {
             self.forget_gains(wanted);
@@ -301,10 +307,11 @@ impl GainCache {
         });
     }
 
-    /// For every cell, by its row-major index, the most that its entropy is expected to fall by from
-    /// some view-points, by one of the beams \[nats\], and the view-point: the first of several. `None`
-    /// for cells that none of them covers; for all with the product of Eq. (9), whose evaluation does
-    /// not tell the cells apart.
+    /// Returns the largest expected fall of every cell's entropy from some view-points \[nats\].
+    ///
+    /// For each cell, by its row-major index, the result has the largest fall by one of the beams
+    /// and its view-point, the first of several. It is `None` for cells that no beam covers, and
+    /// for all cells with the product of Eq. (9), whose evaluation does not tell the cells apart.
     pub fn largest_changes(&mut self, view_points: &ViewPoints) -> Vec<Option<(f64, usize)>> {
         if !self.tells_cells_apart() {
             return vec![None; self.grid.len()];
@@ -337,15 +344,15 @@ impl GainCache {
         largest.into_cells()
     }
 
-    /// The number of rows of view-points that are evaluated together.
+    /// Returns the number of rows of view-points that are evaluated together.
     fn rows_together(&self) -> usize {
         let outcomes = self.beams.first().map_or(1, RasterBeam::outcomes);
         let of_row = groups_per_row(&self.grid) * self.beams.len() * outcomes;
         (OUTCOMES_TOGETHER / of_row).max(1)
     }
 
-    /// Takes over what changed since the last time: makes stale what depends on it, and brings up to
-    /// date what the evaluator keeps of every cell.
+    /// Takes over the changes since the last call: makes the values that depend on them stale, and
+    /// brings the values that the evaluator keeps of every cell up to date.
     fn take_changes(&mut self) {
         let changed = self.belief.take_changed();
         let (arch, beams) = (self.arch, self.beams.len());
@@ -366,8 +373,8 @@ impl GainCache {
         }
     }
 
-    /// Keeps the gains of a row that were evaluated, for the view-points that are wanted. Takes note
-    /// if one of them is above its bound.
+    /// Keeps the evaluated gains of a row for the wanted view-points, and notes if one of them is
+    /// above its bound.
     fn keep_gains(&mut self, row: &AskedRow, gains: RowGains, wanted: &[u16]) {
         let (per_row, beams) = (groups_per_row(&self.grid), self.beams.len());
         for (asked, answer) in row.beams.iter().zip(gains) {
@@ -390,8 +397,9 @@ impl GainCache {
     }
 }
 
-/// Cuts rows of view-points, by their y, in portions of at most `most` that span at most `span`
-/// rows of the grid: what is computed for the cells around a portion needs memory for all of them.
+/// Cuts rows of view-points, by their y, into portions of at most `most` that span at most `span`
+/// rows of the grid, because the values of the cells around a portion take memory for all of these
+/// rows.
 fn portions<T>(rows: &[(usize, T)], most: usize, span: usize) -> Vec<&[(usize, T)]> {
     let mut portions = Vec::new();
     let mut rest = rows;

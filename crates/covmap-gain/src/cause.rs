@@ -1,8 +1,9 @@
 //! The fast evaluation of E\[I\] for the update by cause.
 //!
-//! What an imagined echo says of a cell depends on the cell's histogram and on two shares: g of
-//! "passed" and s of "ended", which follow from the causes, [`covmap_model::Causes`]. So E\[I\] of a
-//! beam is a sum of three kinds, over the outcomes k with their p(d_k | c), causes c_m(k), and L(k):
+//! The gain of a cell by an imagined echo depends on the cell's histogram and on two shares: g of
+//! "passed" and s of "ended", which follow from the causes, [`covmap_model::Causes`]. E\[I\] of a
+//! beam is therefore a sum of three kinds, over the outcomes k with their p(d_k | c), causes
+//! c_m(k), and L(k):
 //!
 //! ```text
 //! in front   Σ_k p_k · Σ_i G_i(f_i · L(k))             over the cells i before the end
@@ -17,7 +18,7 @@
 //! Σ_k p_k · G_i(f_i · L(k)) = Σ_q C_iq · f_i^q · S_q(i)     S_q(i) = Σ_k p_k · L(k)^q
 //! ```
 //!
-//! with k over the outcomes that end beyond i: going inwards from the farthest cell, an outcome is
+//! with k over the outcomes that end beyond i. From the farthest cell inwards, each outcome is
 //! added to the S_q once, and a cell costs as much as one reading. The cells at the end are
 //! evaluated as they are ([`ends`]).
 
@@ -48,7 +49,7 @@ use pulp::Arch;
 use rayon::prelude::*;
 use sums::{AllAndReasons, GainsOfRow, GroupSum, LargestOfRow};
 
-/// The fewest rows of view-points that one thread works at.
+/// The smallest number of rows of view-points for one thread.
 const ROWS_PER_THREAD: usize = 1;
 
 /// Evaluates E\[I\] of many beams.
@@ -68,8 +69,7 @@ pub(crate) struct Cause {
     surface: Vec<f32>,
     /// Bordered: 1 − o.
     clear: Vec<f32>,
-    /// By row and column of the view-point, padded as histograms are: how much of a reading would be
-    /// new.
+    /// Novelty of a reading, by row and column of the view-point, padded as histograms are.
     novelty: Vec<f32>,
 }
 
@@ -121,7 +121,7 @@ impl Cause {
         }
     }
 
-    /// About how many bytes this takes.
+    /// Estimates the bytes of the evaluation.
     pub(crate) fn bytes(size: &Size) -> f64 {
         // A cell of the stencil, and its kernels and surfaces for the outcomes that end nearby.
         let stencil = size.stencil * (40.0 + 4.0 * (4.0 * size.bins + 48.0 + 24.0));
@@ -160,23 +160,23 @@ impl Cause {
         }
     }
 
-    /// Sets how much of a reading from a view-point would be new.
+    /// Sets the novelty of a reading from a view-point.
     pub(crate) fn set_novelty(&mut self, (y, x): (usize, usize), novelty: f32) {
         self.novelty[y * padded(self.grid.width()) + x] = novelty;
     }
 
-    /// The shares of "passed" at which gains are interpolated.
+    /// Returns the shares of "passed" at which gains are interpolated.
     pub(crate) fn shares(&self) -> Vec<f64> {
         self.front.as_ref().map(Polynomials::shares).unwrap_or_default()
     }
 
-    /// Whether there are bounds.
+    /// Returns whether there are bounds.
     pub(crate) fn has_bound(&self) -> bool {
         self.ceilings.is_some()
     }
 
-    /// Upper bounds of what a beam is expected to tell from each view-point of a group; `here` is the
-    /// index of the first one in the bordered rasters.
+    /// Returns upper bounds of the expected gain of a beam from each view-point of a group; `here`
+    /// is the index of the first one in the bordered rasters.
     #[inline(always)]
     pub(crate) fn bound(
         &self,
@@ -202,8 +202,8 @@ impl Cause {
         sum.answer
     }
 
-    /// What every cell is expected to change by at most, from some rows of view-points, of which those
-    /// are wanted that have a bit.
+    /// Returns the largest expected change of every cell from those view-points of some rows that
+    /// have a bit.
     pub(crate) fn largest_changes(
         &self,
         arch: Arch,
@@ -219,7 +219,8 @@ impl Cause {
         found.reduce(none, Largest::merged)
     }
 
-    /// The gains of all beams of some rows, and which of their cells promise at `least` so much.
+    /// Returns the gains of all beams of some rows, and the promises of their cells that gain at
+    /// least `least`.
     pub(crate) fn gains(
         &self,
         arch: Arch,
@@ -232,7 +233,7 @@ impl Cause {
     }
 }
 
-/// What a kernel says with a share: (1 − share)·U + share·N(μ, σ).
+/// Returns the evidence of a kernel with a share: (1 − share)·U + share·N(μ, σ).
 fn evidence(bins: usize, (mu, sigma): (f64, f64), share: f64) -> Evidence {
     let mut t = vec![0.0; bins];
     gaussian(mu, sigma, &mut t);
@@ -241,7 +242,7 @@ fn evidence(bins: usize, (mu, sigma): (f64, f64), share: f64) -> Evidence {
     Evidence::of(t)
 }
 
-/// Numbers of a bordered raster at a cell, from each view-point of a group.
+/// Returns the numbers of a bordered raster at a cell, from each view-point of a group.
 #[inline(always)]
 fn at<'a>(raster: &'a [f32], here: usize, cell: &beam::CauseCell) -> &'a Lanes {
     lanes_at(raster, here.wrapping_add_signed(cell.offset))

@@ -1,9 +1,10 @@
 //! The seam between the cache, which knows what is stale, and the fast evaluations of E\[I\], which
 //! know how an imagined reading changes a histogram.
 //!
-//! An evaluator is told which blocks of the belief changed. Asked for the gains of some beams, given
-//! p(d | c) of their likely outcomes, it answers Σ_d p(d | c) · Σ_i I(h(c_i) | d) for each. It may
-//! have an upper bound of this that is cheaper; without one, all that is asked for is evaluated.
+//! The cache tells an evaluator which blocks of the belief changed. Asked for the gains of some
+//! beams, given p(d | c) of their likely outcomes, the evaluator returns
+//! Σ_d p(d | c) · Σ_i I(h(c_i) | d) for each. It may have a cheaper upper bound of this; without
+//! one, the cache has all gains evaluated that it needs.
 
 use crate::belief::Belief;
 use crate::cause::Cause;
@@ -18,7 +19,7 @@ use covmap::Grid;
 use covmap_model::{SensorModel, Update};
 use pulp::Arch;
 
-/// How E\[I\] is evaluated fast: by the update that imagined readings go through.
+/// Fast evaluation of E\[I\], by the update of the imagined readings.
 #[derive(Debug, Clone)]
 pub(crate) enum Evaluator {
     /// The product of Eq. (9).
@@ -28,7 +29,7 @@ pub(crate) enum Evaluator {
 }
 
 impl Evaluator {
-    /// The evaluator of a model. Bounds are worth their memory only where gains are kept.
+    /// Creates the evaluator of a model. Bounds are worth their memory only where gains are kept.
     pub(crate) fn new(
         model: &SensorModel,
         stencil: &Stencil,
@@ -52,7 +53,7 @@ impl Evaluator {
         }
     }
 
-    /// About how many bytes this takes, with what its tables need while they are made.
+    /// Estimates the bytes of the evaluator, with those that its tables need while they are made.
     pub(crate) fn bytes(size: &Size) -> f64 {
         // Of the update that needs more.
         Product::bytes(size, size.upkeep == Upkeep::Kept).max(Cause::bytes(size))
@@ -66,7 +67,8 @@ impl Evaluator {
         }
     }
 
-    /// How many rows of cells on either side of a row of view-points matter to its gains.
+    /// Returns the number of rows of cells on either side of a row of view-points that matter to
+    /// its gains.
     pub(crate) fn border(&self) -> usize {
         match self {
             Self::Product(product) => product.border(),
@@ -74,15 +76,15 @@ impl Evaluator {
         }
     }
 
-    /// Sets how much of a reading from a view-point, by row and column, would be new; with the product
-    /// all of it is.
+    /// Sets the novelty of a reading from a view-point, by row and column. With the product every
+    /// reading is new.
     pub(crate) fn set_novelty(&mut self, place: (usize, usize), novelty: f32) {
         if let Self::Cause(cause) = self {
             cause.set_novelty(place, novelty);
         }
     }
 
-    /// At which shares gains are interpolated, if they are.
+    /// Returns the shares at which gains are interpolated, if they are.
     pub(crate) fn shares(&self) -> Vec<f64> {
         match self {
             Self::Product(_) => Vec::new(),
@@ -90,7 +92,7 @@ impl Evaluator {
         }
     }
 
-    /// How its planes of gains lie, if it has any.
+    /// Returns the layout of the planes of gains, if there are any.
     pub(crate) fn planes(&self) -> Option<PlaneLayout> {
         match self {
             Self::Product(product) => Some(product.planes()),
@@ -98,8 +100,9 @@ impl Evaluator {
         }
     }
 
-    /// The gains of all beams of some rows, which are given in ascending order of y, and which of
-    /// their cells are expected to gain at `least` so much: with the product any.
+    /// Returns the gains of all beams of some rows, which are given in ascending order of y, and
+    /// their promises: the gains of the cells that are expected to gain at least `least`. With the
+    /// product promises are infinite.
     pub(crate) fn gains(
         &mut self,
         arch: Arch,
@@ -113,7 +116,7 @@ impl Evaluator {
         }
     }
 
-    /// What every cell is expected to change by at most, from some rows of view-points; `None` with
+    /// Returns the largest expected change of every cell from some rows of view-points; `None` with
     /// the product, which does not tell the cells apart.
     pub(crate) fn largest_changes(
         &self,
@@ -127,12 +130,12 @@ impl Evaluator {
         }
     }
 
-    /// Whether it is known which cells gain what.
+    /// Returns whether the gain of each cell is known.
     pub(crate) fn tells_cells_apart(&self) -> bool {
         matches!(self, Self::Cause(_))
     }
 
-    /// Whether [`bound`](Self::bound) is worth asking.
+    /// Returns whether [`bound`](Self::bound) is worth asking.
     pub(crate) fn has_bound(&self) -> bool {
         match self {
             Self::Product(product) => product.has_bound(),
@@ -140,8 +143,9 @@ impl Evaluator {
         }
     }
 
-    /// Upper bounds of what a beam is expected to tell from each view-point of a group; infinite if
-    /// there are none. `here` is the index of the group's first view-point in the bordered rasters.
+    /// Returns upper bounds of the expected gain of a beam from each view-point of a group;
+    /// infinite if there are none. `here` is the index of the group's first view-point in the
+    /// bordered rasters.
     #[inline(always)]
     pub(crate) fn bound(
         &self,

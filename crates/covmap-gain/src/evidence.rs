@@ -1,14 +1,14 @@
-//! p(c | d) of one imagined reading of cells at one distance, and what they gain by it, Eq. (13).
+//! p(c | d) of one imagined reading of cells at one distance, and their gain by it, Eq. (13).
 //!
-//! With the histogram h, its entropy H, and the evidence t = t_min·(1 + e), so that e ≥ 0 is by how
-//! much the evidence of a bin exceeds the least one, Eq. (13) is
+//! With the histogram h, its entropy H, and the evidence t = t_min·(1 + e), where e ≥ 0 is the
+//! relative excess of the evidence of a bin over the least one, Eq. (13) is
 //!
 //! ```text
 //! I = (Σ ĥ·e + Σ h·w(e) − w(E)) / (1 + E),   E = Σ h·e
 //! ĥ = h·(log h + H),   w(e) = (1 + e)·log(1 + e) − e
 //! ```
 //!
-//! so that no product is normalised, one logarithm is enough, and nothing large cancels: weak
+//! This form normalises no product and needs one logarithm, and nothing large cancels: weak
 //! evidence (small e) has small terms only. Without ĥ it is the relative entropy of the histogram
 //! after the reading to that before it.
 
@@ -18,7 +18,7 @@ use covmap::lanes::{LANES, Lanes, add_scaled, fused, ln, map};
 use covmap_model::{Outcome, SensorModel};
 use pulp::{Simd, WithSimd};
 
-/// p(c | d) of one cell, in f64: what tables are made from.
+/// p(c | d) of one cell, in f64, from which tables are made.
 #[derive(Debug, Clone)]
 pub(crate) struct Evidence {
     /// t = p(c | d).
@@ -27,8 +27,8 @@ pub(crate) struct Evidence {
     v: Vec<f64>,
 }
 
-/// The same as it is evaluated for many cells side by side: the bins for which e is above 0, from
-/// `first` on. Far from its mean a Gaussian is nothing, so that these are few.
+/// The evidence in the form for many cells side by side: the bins with e above 0, from `first` on.
+/// They are few, because a Gaussian is nothing far from its mean.
 #[derive(Debug, Clone)]
 pub(crate) struct ExcessEvidence {
     first: usize,
@@ -43,7 +43,7 @@ impl Evidence {
         Self::of(t)
     }
 
-    /// The evidence whose weights at the bins these are.
+    /// Creates the evidence of these weights at the bins.
     pub(crate) fn of(t: Vec<f64>) -> Self {
         let v = t.iter().map(|t| t * libm::log(*t)).collect();
         Self { t, v }
@@ -53,7 +53,8 @@ impl Evidence {
         self.t.len()
     }
 
-    /// The entropy of a histogram after the reading \[nats\], by h and h·log h of every bin.
+    /// Returns the entropy of a histogram after the reading \[nats\], by h and h·log h of every
+    /// bin.
     pub(crate) fn entropy_after(&self, h: &[f64], u: &[f64]) -> f64 {
         let (mut z, mut s) = (0.0, 0.0);
         for ((h, u), (t, v)) in h.iter().zip(u).zip(self.t.iter().zip(&self.v)) {
@@ -63,7 +64,7 @@ impl Evidence {
         libm::log(z) - s / z
     }
 
-    /// The relative entropy of a histogram after the reading to that before it \[nats\].
+    /// Returns the relative entropy of a histogram after the reading to that before it \[nats\].
     pub(crate) fn relative_entropy(&self, h: &[f64]) -> f64 {
         let z: f64 = h.iter().zip(&self.t).map(|(h, t)| h * t).sum();
         h.iter().zip(&self.v).map(|(h, v)| h * v).sum::<f64>() / z - libm::log(z)
@@ -80,7 +81,8 @@ impl Evidence {
 }
 
 impl ExcessEvidence {
-    /// The information gain in every cell of a block, Eq. (13) \[nats\]: 0 where nothing can change.
+    /// Returns the information gain in every cell of a block, Eq. (13) \[nats\]: 0 where nothing
+    /// can change.
     #[inline(always)]
     pub(crate) fn gain(&self, prior: &BlockPrior<'_>) -> Lanes {
         let (mut above, mut sum) = ([0.0f32; LANES], [0.0f32; LANES]);
@@ -117,7 +119,7 @@ impl WithSimd for BlockGains<'_> {
     }
 }
 
-/// I of cells, by Σ ĥ·e + Σ h·w(e) and E of each.
+/// Returns I of cells, by Σ ĥ·e + Σ h·w(e) and E of each.
 #[inline(always)]
 pub(crate) fn gains(sum: &Lanes, above: &Lanes) -> Lanes {
     let of_all = w(above);
@@ -128,8 +130,8 @@ pub(crate) fn gains(sum: &Lanes, above: &Lanes) -> Lanes {
     gain
 }
 
-/// w(e) of numbers that are not negative, each to within 1e-6 of itself: by its series where the
-/// logarithm would cancel.
+/// Returns w(e) of numbers that are not negative, each to within 1e-6 of itself: by its series
+/// where the logarithm would cancel.
 #[inline(always)]
 pub(crate) fn w<const N: usize>(e: &[f32; N]) -> [f32; N] {
     let z = map(e, |e| 1.0 + e);
@@ -143,10 +145,10 @@ pub(crate) fn w<const N: usize>(e: &[f32; N]) -> [f32; N] {
     out
 }
 
-/// Up to here the series of w is exact enough.
+/// Largest e for which the series of w is exact enough.
 pub(crate) const FEW: f32 = 0.2;
 
-/// w(e) by its series, for e up to [`FEW`].
+/// Returns w(e) by its series, for e up to [`FEW`].
 #[inline(always)]
 pub(crate) fn few(e: f32) -> f32 {
     let terms = [1.0 / 42.0, -1.0 / 30.0, 1.0 / 20.0, -1.0 / 12.0, 1.0 / 6.0, -0.5];

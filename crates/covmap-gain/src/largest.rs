@@ -1,10 +1,10 @@
-//! What a cell is expected to change by at most, and from where.
+//! The largest expected change of a cell, and its view-point.
 
-/// For every cell the largest of what its entropy is expected to fall by from some view-points, by one
-/// of their beams, and the view-point.
+/// For every cell the largest expected fall of its entropy by one beam of some view-points, and the
+/// view-point.
 #[derive(Debug, Clone)]
 pub(crate) struct Largest {
-    /// By row-major index; nothing yet is −∞.
+    /// By row-major index; −∞ at first.
     of_cell: Vec<(f32, usize)>,
 }
 
@@ -13,8 +13,8 @@ impl Largest {
         Self { of_cell: vec![(f32::NEG_INFINITY, usize::MAX); cells] }
     }
 
-    /// Takes over what a cell is expected to change by from a view-point, if it is more than before; of
-    /// equal ones from the first view-point.
+    /// Takes over the expected change of a cell from a view-point if it is larger than before, or
+    /// equal and from an earlier view-point.
     pub(crate) fn take(&mut self, cell: usize, (change, from): (f32, usize)) {
         let best = &mut self.of_cell[cell];
         if change > best.0 || change >= best.0 && from < best.1 {
@@ -27,7 +27,7 @@ impl Largest {
         self
     }
 
-    /// By row-major index; `None` for a cell that no beam covers.
+    /// Returns the changes by row-major index; `None` for a cell that no beam covers.
     pub(crate) fn into_cells(self) -> Vec<Option<(f64, usize)>> {
         let found = |(change, from): (f32, usize)| {
             (from != usize::MAX).then_some((f64::from(change), from))

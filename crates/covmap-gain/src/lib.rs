@@ -1,11 +1,11 @@
-//! What a robot would see and is expected to learn at every view-point.
+//! The cells in sight of every view-point, and the information gain that is expected there.
 //!
 //! Section 4 of Stachniss & Burgard (2003), equations (13) and (14). The principal type is
-//! [`GainCache`]: it is told which cells of the map changed, and answers what is in sight of a
-//! view-point and how much is expected to be gained there. [`expected_information_gain`] is the same
-//! gain by the equations as printed.
+//! [`GainCache`]: the caller tells it which cells of the map changed, and it returns the cells in
+//! sight of a view-point and the gain that is expected there. [`expected_information_gain`] is the
+//! same gain by the equations as printed.
 //!
-//! This crate knows nothing of the world, and nothing of which view-point is chosen.
+//! This crate knows neither the world nor the choice of a view-point.
 //!
 //! # Units
 //! Metres, radians, nats.

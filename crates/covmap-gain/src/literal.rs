@@ -1,21 +1,24 @@
-//! E\[I(l)\]: how much a view-point is expected to tell. Eq. (13) and (14).
+//! E\[I(l)\]: the expected information gain of a view-point, Eq. (13) and (14).
 //!
-//! This file is the equations as printed, in f64: the oracle. [`crate::product`] holds what runs.
+//! This file holds the equations as printed, in f64: the oracle. [`crate::product`] and
+//! [`crate::cause`] are the code that runs.
 
 use crate::{BeamStencil, InformationGain, RangeLikelihood, RangePrediction, Stencil, StencilCell};
 use crate::{range_likelihood, reflection};
 use covmap::{Cell, CoverageMap, Histogram, product};
 use covmap_model::{CauseParameters, Causes, Clues, Outcome, SensorModel};
 
-/// The expected information gain of a view-point, Eq. (14), averaged over the beams \[nats\]:
+/// Returns the expected information gain of a view-point, Eq. (14), averaged over the
+/// beams \[nats\]:
 ///
 /// ```text
-/// E\[I(l)\] = Σ_d p(d | c) · Σ_{c_i ∈ C(l,d)} I(h(c_i) | d)
+/// E[I(l)] = Σ_d p(d | c) · Σ_{c_i ∈ C(l,d)} I(h(c_i) | d)
 /// ```
 ///
 /// With [`InformationGain::MutualInformation`] I is Σ h'·log(h'/h), the relative entropy, and
-/// p(d | c) is predicted from expected coverages. `view_point` is l; d runs over the ranges of the stencil and "no echo". I may be negative
-/// for a surprising d. This is the literal evaluation that the fast one is tested against.
+/// p(d | c) is predicted from expected coverages. `view_point` is l; d runs over the ranges of the
+/// stencil and "no echo". I may be negative for a surprising d. Tests compare the fast evaluation
+/// with this literal one.
 pub fn expected_information_gain(
     map: &CoverageMap,
     model: &SensorModel,
@@ -29,13 +32,13 @@ pub fn expected_information_gain(
     sum / beams
 }
 
-/// What the entropy of each cell of a beam is expected to fall by, in the beam's order \[nats\]:
+/// Returns the expected fall of the entropy of each cell of a beam, in the beam's order \[nats\]:
 ///
 /// ```text
 /// Σ_d p(d | c) · I(h_i | d)
 /// ```
 ///
-/// Eq. (14) without its sum over the cells.
+/// This is Eq. (14) without its sum over the cells.
 pub fn expected_changes(
     map: &CoverageMap,
     model: &SensorModel,
@@ -66,7 +69,7 @@ pub fn expected_changes(
     changes
 }
 
-/// The expected coverage of a cell; 0 outside of the grid.
+/// Returns the expected coverage of a cell; 0 outside of the grid.
 fn expected(map: &CoverageMap, cell: Cell, parameters: &CauseParameters) -> f64 {
     match map.grid().index(cell) {
         None => 0.0,
@@ -75,16 +78,15 @@ fn expected(map: &CoverageMap, cell: Cell, parameters: &CauseParameters) -> f64 
     }
 }
 
-/// A reading that is imagined: what it would mean, and, with the update by cause, who would have
-/// caused it.
+/// An imagined reading: its meaning and, with the update by cause, its causes.
 struct Imagined<'a> {
     model: &'a SensorModel,
     outcome: Outcome,
     causes: Option<(&'a CauseParameters, Causes)>,
 }
 
-/// Who would have caused an outcome of a beam from a view-point, by the map as it is; `None` with the
-/// product of Eq. (9), which asks for no cause.
+/// Returns the causes that an outcome of a beam from a view-point would have by the map as it is;
+/// `None` with the product of Eq. (9), which has no causes.
 pub fn imagined_causes(
     map: &CoverageMap,
     model: &SensorModel,
@@ -119,7 +121,7 @@ impl<'a> Imagined<'a> {
         Self { model, outcome, causes }
     }
 
-    /// The information gain in one cell, Eq. (13): `I(h | d) = H(h) − H(h'_d)`. Nothing is gained
+    /// Returns the information gain in one cell, Eq. (13): `I(h | d) = H(h) − H(h'_d)`. It is 0
     /// outside the map and in cells that nothing can change.
     fn information_gain(
         &self,
@@ -144,7 +146,7 @@ impl<'a> Imagined<'a> {
         }
         let z = product(&prior, &evidence, &mut posterior);
         if gain == InformationGain::MutualInformation {
-            // What the map keeps is rounded, and sums to 1 but for that.
+            // The histogram of the map is rounded, and sums to 1 but for that.
             let sum: f64 = prior.iter().sum();
             let terms = posterior.iter().zip(&prior);
             let of_bin =

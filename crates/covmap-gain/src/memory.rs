@@ -1,4 +1,4 @@
-//! How much memory a cache will take, before it takes any.
+//! Estimates of the memory of a cache, before it takes any.
 
 use crate::Upkeep;
 use crate::numbers::PAD;
@@ -7,7 +7,7 @@ use covmap::Grid;
 use covmap::lanes::LANES;
 use covmap_model::SensorModel;
 
-/// What the memory of a cache depends on: counts, as f64, because those of absurd inputs are
+/// Counts on which the memory of a cache depends. They are f64, because those of absurd inputs are
 /// larger than integers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Size {
@@ -15,15 +15,15 @@ pub(crate) struct Size {
     pub(crate) width: f64,
     pub(crate) height: f64,
     pub(crate) bins: f64,
-    /// How far the cells of a stencil lie from its view-point, in cells.
+    /// Largest distance of the cells of a stencil from its view-point, in cells.
     pub(crate) border: f64,
     pub(crate) beams: f64,
     /// The cells of all beams of a stencil.
     pub(crate) stencil: f64,
-    /// The cells of all beams at one distance: the number of distances that are told apart, but for the
+    /// The cells of all beams at one distance: the number of different distances, but for the
     /// symmetry of a ring of sensors that looks the same after a quarter turn.
     pub(crate) cells_per_ring: f64,
-    /// How many ranges there are.
+    /// The number of ranges.
     pub(crate) ranges: f64,
     pub(crate) upkeep: Upkeep,
 }
@@ -49,23 +49,23 @@ impl Size {
         }
     }
 
-    /// How many groups of neighbouring view-points, or blocks of cells.
+    /// Returns the number of groups of neighbouring view-points, or blocks of cells.
     pub(crate) fn blocks(&self) -> f64 {
         (self.width / as_f64(LANES)).ceil() * self.height
     }
 
-    /// How many cells rows with a padding have.
+    /// Returns the number of cells in rows with a padding.
     pub(crate) fn padded(&self) -> f64 {
         (self.width + as_f64(LANES) + 2.0 * as_f64(PAD)) * self.height
     }
 
-    /// How many cells a raster with a border has.
+    /// Returns the number of cells in a raster with a border.
     pub(crate) fn bordered(&self) -> f64 {
         (self.width + 2.0 * self.border) * (self.height + 2.0 * self.border)
     }
 }
 
-/// A number of bytes.
+/// Converts a number of bytes.
 pub(crate) fn whole(bytes: f64) -> u64 {
     #[allow(clippy::cast_possible_truncation, reason = "saturates")]
     let bytes = bytes as u64;

@@ -1,4 +1,4 @@
-//! What an evaluator is asked: some beams of some rows of view-points, with their likely outcomes.
+//! Questions to an evaluator: some beams of some rows of view-points, with their likely outcomes.
 
 use covmap::lanes::{LANES, Lanes};
 use std::ops::Range;
@@ -9,7 +9,7 @@ pub(crate) struct GroupBeam {
     /// The group's place in its row.
     pub(crate) group: usize,
     pub(crate) beam: usize,
-    /// Which of the row's outcomes are its own.
+    /// The beam's own outcomes among those of the row.
     pub(crate) outcomes: Range<usize>,
 }
 
@@ -22,23 +22,24 @@ pub(crate) struct AskedRow {
     /// By [`Stencil::outcome`](crate::Stencil::outcome)'s index: the likely outcomes of the first
     /// beam in ascending order, then those of the next, and so on.
     pub(crate) outcomes: Vec<usize>,
-    /// p(d | c) of each of these, from each view-point of the group: 0 from those that do not ask.
+    /// p(d | c) of each of these, from each view-point of the group; 0 for view-points that do not
+    /// ask.
     pub(crate) probabilities: Vec<Lanes>,
 }
 
-/// What one of these beams is expected to tell, from each view-point of its group, or upper bounds of
-/// that. From view-points that did not ask it means nothing.
+/// Expected gain of one of these beams from each view-point of its group, or upper bounds of it.
+/// The values of view-points that did not ask mean nothing.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BeamAnswer {
     /// E\[I\] \[nats\].
     pub(crate) gain: Lanes,
-    /// What the cells that are reasons to measure are expected to gain, of those that gain enough
-    /// \[nats\]; infinite if the cells are not told apart.
+    /// Expected gain of the cells that are reasons to measure, of those that gain enough \[nats\];
+    /// infinite if the evaluation does not tell the cells apart.
     pub(crate) promise: Lanes,
 }
 
 impl BeamAnswer {
-    /// The same from all view-points.
+    /// Creates an answer that is the same from all view-points.
     pub(crate) fn all(gain: f32, promise: f32) -> Self {
         Self { gain: [gain; LANES], promise: [promise; LANES] }
     }

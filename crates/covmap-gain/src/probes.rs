@@ -1,8 +1,8 @@
 //! Histograms of all kinds, on which the errors of tables are measured.
 //!
-//! No table is proved to be exact enough: it is, for the worst of these histograms. They are single
-//! and paired peaks of many places and widths on floors of many heights, which is what few and many
-//! readings leave.
+//! No table is proved to be exact enough: its error is measured for the worst of these histograms.
+//! They are single and paired peaks of many places and widths on floors of many heights, as few and
+//! many readings leave them.
 
 use crate::belief::BlockPrior;
 use crate::evidence::Evidence;
@@ -11,15 +11,15 @@ use covmap::bin_coverage;
 use covmap::lanes::LANES;
 use covmap_model::{Outcome, SensorModel};
 
-/// An interpolated gain of a cell may be off by this, in units of the largest gain of its
-/// histogram and of one that matters in a decision: what a decision tolerates, for the worst of
-/// histograms. Errors of many cells cancel: E\[I\] is off by some hundredth of it, but with four
-/// times as much random models were found for which it is off by more than a decision tolerates.
+/// Largest error of an interpolated gain of a cell, in units of the largest gain of its histogram
+/// plus one that matters in a decision: a decision tolerates as much for the worst of histograms.
+/// Errors of many cells cancel: E\[I\] is off by some hundredth of it. With four times as much,
+/// random models were found whose error is larger than a decision tolerates.
 pub(crate) const TOLERANCE: f64 = 1e-5;
-/// A gain that matters in a decision is so much of the largest that a reading can give.
+/// A gain that matters in a decision, as a part of the largest that a reading can give.
 const MATTERING: f64 = 0.1;
 
-/// How wide the peaks of the probes are, and what they stand on: much after few readings.
+/// Widths of the peaks of the probes, and the floors under them, which are high after few readings.
 const WIDTHS_AND_FLOORS: [(f64, f64); 10] = [
     (0.04, 1e-6),
     (0.04, 1e-2),
@@ -40,7 +40,8 @@ struct ProbeBlock {
 }
 
 impl ProbeBlock {
-    /// Of h and h·log h of at most this many bins; the others are 0.
+    /// Creates a block of at most [`LANES`] probes from h and h·log h of each; the other lanes
+    /// are 0.
     fn new(probes: &[(Vec<f64>, Vec<f64>)]) -> Self {
         let bins = probes.first().map_or(0, |(h, _)| h.len());
         let (mut h, mut h_hat) = (vec![0.0; bins * LANES], vec![0.0; bins * LANES]);
@@ -59,7 +60,7 @@ impl ProbeBlock {
     }
 }
 
-/// The histograms of a model.
+/// The probe histograms of a model.
 #[derive(Debug, Clone)]
 pub(crate) struct ProbeHistograms {
     /// h and h·log h of every bin.
@@ -69,13 +70,14 @@ pub(crate) struct ProbeHistograms {
 }
 
 impl ProbeHistograms {
-    /// Those of a model, whose strongest evidence is that of a cell near to the sensor.
+    /// Creates the probes of a model, whose strongest evidence is that about a cell near the
+    /// sensor.
     pub(crate) fn of_model(model: &SensorModel) -> Self {
         let near = 2.0 * model.resolution();
         Self::new(&Evidence::new(model, near, Outcome::Echo(2.0 * near)))
     }
 
-    /// The uniform one, and narrow and wide ones around many coverages, alone and in pairs.
+    /// Creates a uniform probe, and narrow and wide ones around many coverages, alone and in pairs.
     /// `strongest` is the evidence that tells most.
     pub(crate) fn new(strongest: &Evidence) -> Self {
         let bins = strongest.bins();
@@ -105,36 +107,36 @@ impl ProbeHistograms {
         found
     }
 
-    /// A gain that matters in a decision \[nats\].
+    /// Returns a gain that matters in a decision \[nats\].
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// The gain of every probe by a reading, Eq. (13) \[nats\].
+    /// Returns the gain of every probe by a reading, Eq. (13) \[nats\].
     pub(crate) fn gains(&self, evidence: &Evidence) -> Vec<f64> {
         self.gained(self.after(evidence))
     }
 
-    /// The relative entropy of every probe by a reading \[nats\].
+    /// Returns the relative entropy of every probe by a reading \[nats\].
     pub(crate) fn relative_entropies(&self, evidence: &Evidence) -> Vec<f64> {
         self.histograms.iter().map(|(h, _)| evidence.relative_entropy(h)).collect()
     }
 
-    /// The gains of all probes by each of some readings, in units of what an interpolated one may be
-    /// off.
+    /// Returns the gains of all probes by each of some readings, in units of the allowed error of
+    /// an interpolated gain.
     pub(crate) fn in_tolerances(&self, readings: &[&Evidence]) -> Vec<Vec<f64>> {
         let after: Vec<Vec<f64>> = readings.iter().map(|reading| self.after(reading)).collect();
         let allowed = self.allowed(&after, 1.0);
         after.into_iter().map(|after| self.in_units(after, &allowed)).collect()
     }
 
-    /// The gains of all probes, given their entropies after a reading, in units of each.
+    /// Returns the gains of all probes, given their entropies after a reading, in units of each.
     pub(crate) fn in_units(&self, after: Vec<f64>, units: &[f64]) -> Vec<f64> {
         self.gained(after).into_iter().zip(units).map(|(gain, unit)| gain / unit).collect()
     }
 
-    /// By how much the gains by some readings differ in single precision, in units of each probe, for
-    /// the worst.
+    /// Returns the largest error of the gains by some readings in single precision, in units of
+    /// each probe.
     pub(crate) fn single_precision(&self, readings: &[&Evidence], units: &[f64]) -> f64 {
         let mut worst = 0.0f64;
         for (some, units) in self.histograms.chunks(LANES).zip(units.chunks(LANES)) {
@@ -150,29 +152,30 @@ impl ProbeHistograms {
         worst
     }
 
-    /// The entropy of every probe \[nats\].
+    /// Returns the entropy of every probe \[nats\].
     fn before(&self) -> impl Iterator<Item = f64> {
         self.histograms.iter().map(|(_, u)| -u.iter().sum::<f64>())
     }
 
-    /// What every probe gained, given its entropy after a reading \[nats\].
+    /// Returns the gain of every probe, given its entropy after a reading \[nats\].
     fn gained(&self, after: Vec<f64>) -> Vec<f64> {
         self.before().zip(after).map(|(before, after)| before - after).collect()
     }
 
-    /// The entropy of every probe after a reading \[nats\].
+    /// Returns the entropy of every probe after a reading \[nats\].
     pub(crate) fn after(&self, evidence: &Evidence) -> Vec<f64> {
         self.histograms.iter().map(|(h, u)| evidence.entropy_after(h, u)).collect()
     }
 
-    /// How much an interpolated entropy of each probe may be off, where these are exact; more
-    /// by a factor.
+    /// Returns the allowed error of an interpolated entropy of each probe, given exact ones, times
+    /// `leniency`.
     pub(crate) fn allowed(&self, exact: &[Vec<f64>], leniency: f64) -> Vec<f64> {
         let gains = self.largest_gains(exact).into_iter();
         gains.map(|gain| leniency * TOLERANCE * (gain + self.scale)).collect()
     }
 
-    /// The largest change of every probe's entropy, given those after some readings \[nats\].
+    /// Returns the largest change of every probe's entropy, given those after some
+    /// readings \[nats\].
     fn largest_gains(&self, after: &[Vec<f64>]) -> Vec<f64> {
         let largest = |(probe, before): (usize, f64)| {
             after.iter().map(|after| (before - after[probe]).abs()).fold(0.0, f64::max)

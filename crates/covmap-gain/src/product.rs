@@ -1,11 +1,12 @@
 //! The fast evaluation of E\[I\] for the update by the product, Eq. (9).
 //!
-//! An *imagined reading* is an outcome d, seen from a distance d^l: what it tells of a cell is
-//! p(c | d), the [`evidence`](crate::evidence), and what the cell gains by it depends on nothing
-//! else but the cell's histogram. So cells are taken ring by ring of distance ([`sweep`]): within a
-//! ring all view-points and all beams imagine the same readings. And readings that are alike gain
-//! alike, so that few are evaluated ([`tables`]): each is interpolated between a few nodes of range
-//! and distance, and the nodes are mixtures of a few readings that are kept for every cell.
+//! An *imagined reading* is an outcome d, seen from a distance d^l. Its evidence about a cell is
+//! p(c | d), the [`evidence`](crate::evidence), and the gain of the cell by it depends on nothing
+//! else but the cell's histogram. The cells are therefore taken ring by ring of distance
+//! ([`sweep`]): within a ring all view-points and all beams imagine the same readings. Similar
+//! readings have similar gains, so that few are evaluated ([`tables`]): each is interpolated
+//! between a few nodes of range and distance, and the nodes are mixtures of a few readings that are
+//! kept for every cell.
 //!
 //! Upper bounds ([`bound`]) put families of readings together, with one number for each cell.
 
@@ -48,7 +49,7 @@ impl Product {
         }
     }
 
-    /// About how many bytes this takes, with what its tables need while they are made.
+    /// Estimates the bytes of the evaluation, with those that its tables need while they are made.
     pub(crate) fn bytes(size: &Size, with_bounds: bool) -> f64 {
         Sweep::bytes(size) + if with_bounds { Ceilings::bytes(size) } else { 0.0 }
     }
@@ -61,17 +62,18 @@ impl Product {
         }
     }
 
-    /// How many rows of cells on either side of a row of view-points matter to its gains.
+    /// Returns the number of rows of cells on either side of a row of view-points that matter to
+    /// its gains.
     pub(crate) fn border(&self) -> usize {
         self.sweep.border()
     }
 
-    /// How its planes of gains lie.
+    /// Returns the layout of the planes of gains.
     pub(crate) fn planes(&self) -> PlaneLayout {
         self.sweep.planes()
     }
 
-    /// The gains of all beams of some rows, which are given in ascending order of y.
+    /// Returns the gains of all beams of some rows, which are given in ascending order of y.
     pub(crate) fn gains(
         &mut self,
         arch: Arch,
@@ -85,7 +87,8 @@ impl Product {
         self.ceilings.is_some()
     }
 
-    /// An upper bound, as far as is probed, of the gain of a beam from each view-point of a group.
+    /// Returns an upper bound, as far as is probed, of the gain of a beam from each view-point of a
+    /// group.
     #[inline(always)]
     pub(crate) fn bound(
         &self,

@@ -1,34 +1,34 @@
-//! p(d | c): which range a beam will measure, by ray-tracing the most likely map.
+//! p(d | c): the likelihood of the ranges of a beam, by ray-tracing the most likely map.
 
 use crate::BeamStencil;
 use covmap::{Cell, CoverageMap};
 use serde::{Deserialize, Serialize};
 
-/// What is expected of a view-point.
+/// Measure of the gain of a view-point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum InformationGain {
-    /// The paper's: by how much the entropies are expected to fall, Eq. (14), with ranges that are
+    /// The paper's measure: the expected fall of the entropies, Eq. (14), with ranges that are
     /// predicted from the most likely map. It may be negative: a surprise makes a histogram wider.
     Eq14,
-    /// What is expected to be learnt, by Lindley \[1956\] and never negative: the relative entropy
-    /// of the histograms after the reading to those before it, with ranges that are predicted from
-    /// the map that explains them, by expected coverages. With the update by cause only: Eq. (9) has
-    /// no prediction of its own.
+    /// The expected information of Lindley \[1956\], which is never negative: the relative entropy
+    /// of the histograms after the reading to those before it. The ranges are predicted from the
+    /// map that explains them, by expected coverages. This measure needs the update by cause:
+    /// Eq. (9) has no prediction of its own.
     MutualInformation,
 }
 
-/// How ranges are predicted, and what is expected of them.
+/// Prediction of ranges, and the measure of their gain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RangePrediction {
-    /// What is expected of a view-point.
+    /// Measure of the gain of a view-point.
     pub gain: InformationGain,
-    /// c_u: how much an unknown cell reflects, in \[0, 1\].
+    /// c_u: reflection of an unknown cell, in \[0, 1\].
     pub unknown_reflection: f64,
     /// η: the share of every predicted range's probability that is spread over all ranges, in
     /// \[0, 1\].
     pub uniform_share: f64,
-    /// How much of a reading would be new, in \[0, 1\]: [`covmap_model::Looks`]. It belongs to a
-    /// view-point, and [`crate::GainCache`] has one for each.
+    /// Novelty of a reading, in \[0, 1\] ([`covmap_model::Looks`]). It belongs to a view-point, and
+    /// [`crate::GainCache`] has one for each.
     pub novelty: f64,
 }
 
@@ -37,14 +37,14 @@ pub struct RangePrediction {
 pub struct RangeLikelihood {
     /// P(k), the probability of an echo from d_k = k·r.
     pub echo: Vec<f64>,
-    /// The probability that nothing answers.
+    /// The probability of no echo.
     pub no_echo: f64,
-    /// How many rings decide: a ring that surely reflects hides all behind it.
+    /// Number of rings that decide: a ring that surely reflects hides all behind it.
     pub traced: usize,
 }
 
-/// How much a cell reflects: its most likely coverage; `unknown` where the map is unknown,
-/// and nothing outside the grid.
+/// Returns the reflection of a cell: its most likely coverage, `unknown` where the map is unknown,
+/// and 0 outside the grid.
 pub fn reflection(map: &CoverageMap, cell: Cell, unknown: f64) -> f64 {
     match map.grid().index(cell) {
         None => 0.0,
@@ -53,17 +53,17 @@ pub fn reflection(map: &CoverageMap, cell: Cell, unknown: f64) -> f64 {
     }
 }
 
-/// The likelihood of every outcome of a beam, p(d | c) of Eq. (14). Written to `out`.
+/// Writes the likelihood of every outcome of a beam, p(d | c) of Eq. (14), to `out`.
 ///
 /// ```text
 /// q_k = Σ w_i ρ_i over the ring S_k      P(k) = q_k · Π_{j<k} (1 − q_j)
 /// P(no echo) = Π (1 − q_j)
 /// ```
 ///
-/// then a share η of all is spread evenly. `reflection(i)` is ρ of the stencil's i-th cell,
-/// `uniform_share` is η. Reading: the paper says "a ray-tracing technique similar to Moravec
-/// and Elfes using the current maximum likelihood coverage map"; on a map of zeros and ones
-/// along one ray this is its first hit.
+/// A share η of all is then spread evenly. `reflection(i)` is ρ of the stencil's i-th cell,
+/// `uniform_share` is η. Reading: the paper says "a ray-tracing technique similar to Moravec and
+/// Elfes using the current maximum likelihood coverage map"; on a map of zeros and ones along one
+/// ray this is its first hit.
 #[inline]
 pub fn range_likelihood(
     beam: &BeamStencil,
@@ -93,13 +93,14 @@ pub fn range_likelihood(
 }
 
 impl RangeLikelihood {
-    /// The probability of an outcome by its index: an echo from d_k, or, past them, no echo.
+    /// Returns the probability of an outcome by its index: an echo from d_k, or, past them, no
+    /// echo.
     pub fn probability(&self, k: usize) -> f64 {
         self.echo.get(k).copied().unwrap_or(self.no_echo)
     }
 
-    /// V(l) of one beam, the one predicate of sight: how many of the beam's cells, in order
-    /// of distance, are in the footprint of its outcome with a total probability ≥ ½.
+    /// Returns V(l) of one beam, the one predicate of sight: the number of the beam's cells, in
+    /// order of distance, that are in the footprint of its outcome with a total probability ≥ ½.
     pub fn cells_in_sight(&self, beam: &BeamStencil) -> usize {
         let likely = |p: f64| p >= 0.5 - 1e-12;
         let mut tail = 0.0;

@@ -1,6 +1,6 @@
 //! p(d | c) and V(l) of one beam from a group of view-points, side by side.
 //!
-//! The same as [`range_likelihood`](crate::range_likelihood()) and
+//! The values are those of [`range_likelihood`](crate::range_likelihood()) and
 //! [`RangeLikelihood::cells_in_sight`](crate::RangeLikelihood::cells_in_sight), to the last bit;
 //! outcomes that are impossible from all view-points of the group are left out.
 
@@ -12,15 +12,15 @@ use covmap::lanes::{LANES, Lanes};
 /// [`LANES`] numbers in double precision.
 pub(crate) type Lanes64 = [f64; LANES];
 
-/// Outcomes less likely than this are left out of E\[I\]: of some hundred outcomes, all of them
-/// together are less than a hundredth of what a decision tolerates.
+/// Probability below which an outcome is left out of E\[I\]. Of some hundred outcomes, all of them
+/// together are less than a hundredth of the tolerance of a decision.
 pub const NEGLIGIBLE: f64 = 1e-9;
 
 /// A beam over the bordered rasters of a [`Belief`]: the same from all view-points.
 #[derive(Debug, Clone)]
 pub(crate) struct RasterBeam {
     stencil: BeamStencil,
-    /// From a view-point to each of the cells in the bordered rasters.
+    /// Offsets from a view-point to each of the cells in the bordered rasters.
     offsets: Vec<isize>,
     /// d^l \[m\].
     distances: Vec<f32>,
@@ -30,11 +30,12 @@ pub(crate) struct RasterBeam {
 /// p(d | c) of one beam from a group of view-points.
 #[derive(Debug, Clone)]
 pub(crate) struct GroupLikelihood {
-    /// k and P(k) of the echoes that are possible from any of them.
+    /// k and P(k) of the echoes that are possible from any of the view-points.
     echoes: Vec<(usize, Lanes64)>,
     /// The outcome past all echoes.
     no_echo: (usize, Lanes64),
-    /// How many rings of the beam decide: see [`RangeLikelihood::traced`](crate::RangeLikelihood).
+    /// Number of rings of the beam that decide: see
+    /// [`RangeLikelihood::traced`](crate::RangeLikelihood).
     traced: Lanes64,
 }
 
@@ -43,18 +44,18 @@ impl GroupLikelihood {
         Self { echoes: Vec::new(), no_echo: (0, [0.0; LANES]), traced: [0.0; LANES] }
     }
 
-    /// k and P(k) of the possible echoes, in order.
+    /// Returns k and P(k) of the possible echoes, in order.
     pub(crate) fn echoes(&self) -> &[(usize, Lanes64)] {
         &self.echoes
     }
 
-    /// The probability of no echo.
+    /// Returns the probability of no echo.
     pub(crate) fn no_echo(&self) -> &Lanes64 {
         &self.no_echo.1
     }
 
-    /// The outcomes that matter to any of some view-points, with their probabilities: 0 for the
-    /// other view-points, and where they do not matter.
+    /// Visits the outcomes that matter to any of some view-points, with their probabilities: 0 for
+    /// the other view-points, and for those to which an outcome does not matter.
     #[inline(always)]
     pub(crate) fn for_each_likely(&self, view_points: u16, mut take: impl FnMut(usize, Lanes)) {
         let least: Lanes64 = std::array::from_fn(|lane| {
@@ -88,30 +89,31 @@ impl RasterBeam {
         }
     }
 
-    /// How many outcomes there are.
+    /// Returns the number of outcomes.
     pub(crate) fn outcomes(&self) -> usize {
         self.stencil.rings.len() + 1
     }
 
-    /// Its cells from a view-point.
+    /// Returns the cells of the beam from a view-point.
     pub(crate) fn stencil(&self) -> &BeamStencil {
         &self.stencil
     }
 
-    /// From a view-point to each of the beam's cells in the bordered rasters.
+    /// Returns the offsets from a view-point to each of the beam's cells in the bordered rasters.
     pub(crate) fn offsets(&self) -> &[isize] {
         &self.offsets
     }
 
-    /// The likelihood of every outcome by the most likely map, written to `out`: what decides what
-    /// is in sight. `here` is the index of the group's first view-point in the bordered rasters.
+    /// Writes the likelihood of every outcome by the most likely map to `out`. This likelihood
+    /// decides the sight. `here` is the index of the group's first view-point in the bordered
+    /// rasters.
     #[inline(always)]
     pub(crate) fn predict(&self, belief: &Belief, here: usize, out: &mut GroupLikelihood) {
         let reflects = |offset: &isize| belief.any_reflects(here.wrapping_add_signed(*offset));
         self.predict_by(belief.reflections(), reflects, here, out);
     }
 
-    /// The same as gains are predicted.
+    /// Writes the likelihood of every outcome by which gains are predicted to `out`.
     #[inline(always)]
     pub(crate) fn predict_gain(&self, belief: &Belief, here: usize, out: &mut GroupLikelihood) {
         match belief.means() {
@@ -168,8 +170,8 @@ impl RasterBeam {
         *no_echo = (rings, survival.map(|s| keep * s + even));
     }
 
-    /// V(l) of the beam: how many of its cells are in sight. An echo that is impossible changes no
-    /// sum, and what it covers one from farther away covers, too.
+    /// Returns V(l) of the beam: the number of its cells in sight. An impossible echo changes no
+    /// sum, and an echo from farther away covers its cells, too.
     #[inline(always)]
     pub(crate) fn in_sight(&self, likelihood: &GroupLikelihood) -> [u16; LANES] {
         const LIKELY: f64 = 0.5 - 1e-12;
@@ -202,8 +204,8 @@ impl RasterBeam {
         out
     }
 
-    /// How many of the beam's cells decide what some view-points see and gain: those that may
-    /// reflect, and those that a possible outcome covers.
+    /// Returns the number of the beam's cells that decide the sight and the gain of some
+    /// view-points: the cells that may reflect, and the cells that a possible outcome covers.
     #[inline(always)]
     pub(crate) fn horizon(
         &self,
@@ -214,7 +216,7 @@ impl RasterBeam {
         #[allow(clippy::cast_possible_truncation, reason = "longer beams are refused")]
         let all = self.offsets.len() as u16;
         if !belief.means().is_empty() {
-            // Of expected coverages hardly one is 0 or 1: any range is possible.
+            // Hardly any expected coverage is 0 or 1: any range is possible.
             return all;
         }
         let mut farthest = [0.0; LANES];
@@ -237,7 +239,7 @@ impl RasterBeam {
         cells
     }
 
-    /// Which of some view-points have a reason to measure in sight, as far as the beam sees from
+    /// Returns the view-points that have a reason to measure in sight, as far as the beam sees from
     /// each of them.
     #[inline(always)]
     pub(crate) fn reasons(
@@ -263,7 +265,7 @@ impl RasterBeam {
         bits(&found)
     }
 
-    /// The cells of the beam that are in sight, with their distances.
+    /// Returns the cells of the beam that are in sight, with their distances.
     pub(crate) fn cells_in_sight(
         &self,
         in_sight: u16,
@@ -272,7 +274,8 @@ impl RasterBeam {
     }
 }
 
-/// Whether no lane is above 0, where none is below. Compared as bits, side by side.
+/// Returns whether no lane is above 0, where none is below. The lanes are compared as bits, side by
+/// side.
 #[inline(always)]
 fn all_zero(lanes: &Lanes64) -> bool {
     let mut bits = 0;
@@ -286,7 +289,7 @@ fn bits(lanes: &[u16; LANES]) -> u16 {
     lanes.iter().enumerate().fold(0, |bits, (lane, set)| bits | (set << lane))
 }
 
-/// The values of a bordered raster at an offset from a group of view-points.
+/// Returns the values of a bordered raster at an offset from a group of view-points.
 #[inline(always)]
 pub(crate) fn at_offset<T>(raster: &[T], here: usize, offset: isize) -> &[T; LANES] {
     let at = here.wrapping_add_signed(offset);

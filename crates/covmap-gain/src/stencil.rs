@@ -15,12 +15,12 @@ pub struct StencilCell {
     pub dy: i32,
     /// d^l, distance from the sensor \[m\].
     pub cell_distance: f64,
-    /// Where it lies across the beam: 0 at the right border, 1 at the left.
+    /// Position across the beam: 0 at the right border, 1 at the left.
     pub across: f64,
 }
 
 impl StencilCell {
-    /// The cell as its beam meets it.
+    /// Returns the cell as its beam meets it.
     pub fn met(&self) -> Met {
         Met { cell_distance: self.cell_distance, across: self.across }
     }
@@ -36,9 +36,9 @@ pub struct BeamStencil {
     pub weights: Vec<f64>,
     /// S_k: the cells at the range d_k = k·r, |d^l − d_k| ≤ r/2.
     pub rings: Vec<Range<usize>>,
-    /// How many cells an echo from d_k covers.
+    /// Number of cells that an echo from d_k covers.
     pub echo_reach: Vec<usize>,
-    /// How many cells no echo covers.
+    /// Number of cells that no echo covers.
     pub no_echo_reach: usize,
 }
 
@@ -49,14 +49,14 @@ pub struct Stencil {
     pub beams: Vec<BeamStencil>,
     /// The ranges d_k = k·r that a beam may measure \[m\].
     pub ranges: Vec<f64>,
-    /// No cell is more columns or rows than this from the view-point.
+    /// Largest distance of a cell from the view-point, in columns or rows.
     pub radius: i32,
 }
 
-/// Beams of more cells than this from end to end are refused: two hundred metres in cells of 0.1 m.
+/// Largest length of a beam in cells: two hundred metres in cells of 0.1 m.
 pub(crate) const FARTHEST: f64 = 2000.0;
 
-/// Why gains cannot be computed.
+/// Error of beams whose gains cannot be computed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BeamError {
     /// A beam covers more cells than can be numbered.
@@ -64,9 +64,9 @@ pub enum BeamError {
         "a beam covers {0} cells, 65535 are too many: use a coarser resolution, a shorter usable range or a narrower footprint"
     )]
     TooFine(usize),
-    /// The update says nothing of what will be measured.
+    /// The update does not predict ranges.
     #[error(
-        "planner.gain: MutualInformation needs the update by cause, which predicts what it explains; with Eq. (9) take Eq14"
+        "planner.gain: MutualInformation needs the update by cause, which predicts the ranges that it explains; with Eq. (9) take Eq14"
     )]
     NoPrediction,
     /// A beam reaches too far, in cells.
@@ -81,7 +81,8 @@ pub enum BeamError {
 const DISTANCE_STEP: f64 = 1.0 / (1u64 << 36) as f64;
 
 impl Stencil {
-    /// The stencil of a model's ring at a heading \[rad\]: its cells up to 2200 from the view-point.
+    /// Creates the stencil of a model's ring at a heading \[rad\], with the cells up to 2200 from
+    /// the view-point.
     pub fn new(model: &SensorModel, heading: f64) -> Self {
         let r = model.resolution();
         let usable = model.parameters().usable_range;
@@ -94,19 +95,19 @@ impl Stencil {
         Self { beams, ranges, radius }
     }
 
-    /// The outcome of index `k`: an echo from d_k, or, one past them all, no echo.
+    /// Returns the outcome of index `k`: an echo from d_k, or, one past them all, no echo.
     pub fn outcome(&self, k: usize) -> Outcome {
         self.ranges.get(k).map_or(Outcome::NoEcho, |d| Outcome::Echo(*d))
     }
 
-    /// How many outcomes there are: K + 1 ranges and no echo.
+    /// Returns the number of outcomes: K + 1 ranges and no echo.
     pub fn outcomes(&self) -> usize {
         self.ranges.len() + 1
     }
 }
 
 impl BeamStencil {
-    /// How many of the cells an outcome covers, by [`Stencil::outcome`]'s index.
+    /// Returns the number of cells that an outcome covers, by [`Stencil::outcome`]'s index.
     pub fn reach(&self, k: usize) -> usize {
         self.echo_reach.get(k).copied().unwrap_or(self.no_echo_reach)
     }

@@ -17,19 +17,19 @@ pub struct ViewPoints {
 }
 
 impl ViewPoints {
-    /// The empty set.
+    /// Creates the empty set.
     pub fn new(grid: &Grid) -> Self {
         Self { width: grid.width(), bits: vec![0; grid.height() * groups_per_row(grid)] }
     }
 
-    /// Some view-points, by their row-major indices.
+    /// Creates a set of some view-points, by their row-major indices.
     pub fn of(grid: &Grid, indices: impl IntoIterator<Item = usize>) -> Self {
         let mut set = Self::new(grid);
         indices.into_iter().for_each(|index| set.insert(index));
         set
     }
 
-    /// One view-point, by its row-major index.
+    /// Creates a set of one view-point, by its row-major index.
     pub fn one(grid: &Grid, index: usize) -> Self {
         Self::of(grid, [index])
     }
@@ -40,19 +40,19 @@ impl ViewPoints {
         self.bits[group] |= 1 << lane;
     }
 
-    /// Adds all view-points of another set that are in the same group as one of them: computed side
-    /// by side, neighbours cost nothing.
+    /// Adds all view-points of another set that are in the same group as one of them. Neighbours
+    /// are computed side by side and cost nothing.
     pub fn insert_neighbours(&mut self, of: &Self, index: usize) {
         let (group, _) = group_and_lane(self.width, index);
         self.bits[group] |= of.bits[group];
     }
 
-    /// The members of each group, bit by bit, row by row.
+    /// Returns the members of each group, bit by bit, row by row.
     pub(crate) fn groups(&self) -> &[u16] {
         &self.bits
     }
 
-    /// The row-major indices of those members that `keep` leaves in each group, in order.
+    /// Returns the row-major indices of those members that `keep` leaves in each group, in order.
     pub(crate) fn indices(&self, keep: impl Fn(usize) -> u16) -> Vec<usize> {
         let mut indices = Vec::new();
         let per_row = self.width.div_ceil(LANES);
@@ -66,13 +66,13 @@ impl ViewPoints {
     }
 }
 
-/// How many groups, or blocks, a row has.
+/// Returns the number of groups, or blocks, of a row.
 pub(crate) fn groups_per_row(grid: &Grid) -> usize {
     grid.width().div_ceil(LANES)
 }
 
-/// The group of a view-point and its lane, by its row-major index and the grid's width; of a cell
-/// its block and its lane.
+/// Returns the group of a view-point and its lane, by its row-major index and the grid's width; for
+/// a cell its block and its lane.
 pub(crate) fn group_and_lane(width: usize, index: usize) -> (usize, usize) {
     let (x, y) = (index % width, index / width);
     (y * width.div_ceil(LANES) + x / LANES, x % LANES)

@@ -1,5 +1,5 @@
-//! The cache on random maps: its gains are those of the literal equations, below their bounds, and
-//! what is kept is what a fresh cache computes.
+//! The cache on random maps: its gains are those of the literal equations and below their bounds,
+//! and kept values are those of a fresh cache.
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
 use covmap::{CoverageMap, Grid};
@@ -23,7 +23,7 @@ const PLAIN: RangePrediction = RangePrediction {
     novelty: 1.0,
 };
 
-/// One view-point in this many is compared with the literal equations, which are slow.
+/// One view-point in this number is compared with the literal equations, which are slow.
 const SAMPLED: usize = 37;
 
 struct Setting {
@@ -53,8 +53,8 @@ impl Setting {
         }
     }
 
-    /// Some view-points tell less that is new, as if the robot had been near; with the product all is
-    /// new, everywhere.
+    /// Some view-points tell less that is new, as if the robot had been near; with the product
+    /// every reading is new, everywhere.
     fn novelty(&self, view_point: usize) -> f64 {
         let shares = [1.0, 0.3, 1.0, 0.85, 0.0];
         if self.cache.tells_cells_apart() { shares[view_point / 3 % shares.len()] } else { 1.0 }
@@ -72,14 +72,14 @@ impl Setting {
         ViewPoints::of(self.map.grid(), 0..self.map.grid().len())
     }
 
-    /// All gains as they are cached.
+    /// Returns all gains of the cache.
     fn gains(&mut self) -> Vec<f64> {
         let all = self.all();
         self.cache.refresh_gains(&all);
         (0..self.map.grid().len()).map(|index| self.cache.gain(index)).collect()
     }
 
-    /// A cache that is told of the whole map at once.
+    /// Returns a cache that is told of the whole map at once.
     fn fresh(&self) -> Setting {
         let grid = *self.map.grid();
         let mut cache =
@@ -103,7 +103,7 @@ fn some_scans() -> impl Strategy<Value = Vec<(f64, f64, Vec<Range>)>> {
     prop::collection::vec((-1.0..1.0f64, -0.7..0.7f64, ranges), 1..4)
 }
 
-/// Models of the update by cause that differ in all that the fast evaluation makes use of.
+/// Models of the update by cause that differ in all parameters that the fast evaluation uses.
 fn some_causes() -> impl Strategy<Value = ModelParameters> {
     let free = (0.05..=1.0f64, 0.3..3.0f64, 0.3..9.0f64, 0.5..0.9f64);
     let answers = (1..=16usize, 0.3..2.0f64, 0.3..6.0f64, 0.0..6.0f64);
@@ -137,7 +137,7 @@ fn some_causes() -> impl Strategy<Value = ModelParameters> {
     })
 }
 
-/// Models that differ in all that the fast evaluation makes use of.
+/// Models that differ in all parameters that the fast evaluation uses.
 fn some_models() -> impl Strategy<Value = ModelParameters> {
     let gamma = (0.02..0.4f64, 0.0..0.4f64, prop_oneof![Just(0.0), 0.0..0.3f64]);
     let evidence = (gamma, prop::sample::select(vec![0.0, 0.1, 0.15, 0.35]), 0.1..=1.0f64);
@@ -166,7 +166,7 @@ fn some_models() -> impl Strategy<Value = ModelParameters> {
     )
 }
 
-/// Sensors around the robot, so far from its centre \[m\].
+/// Returns sensors around the robot at an `offset` from its centre \[m\].
 fn ring(offset: f64) -> SonarRing {
     let beam = |i: u32| {
         let angle = 2.0 * PI * f64::from(i) / 24.0;

@@ -1,13 +1,13 @@
-//! Tables that are there whole or not at all.
+//! Tables that are written whole or not at all.
 
 use crate::{FileError, NewFile, Replace};
 use std::io;
 use std::path::Path;
 
-/// Writes a table, replacing an old one: for folders that are covmap's own.
+/// Writes a table, and replaces an old one: for covmap's own folders.
 ///
 /// # Errors
-/// If it cannot be written; then nothing is left of it.
+/// If the table cannot be written. Nothing of it is left then.
 pub fn write(
     path: &Path,
     rows: impl FnOnce(&mut NewFile) -> io::Result<()>,
@@ -18,7 +18,7 @@ pub fn write(
 /// Writes a table where the user wants it.
 ///
 /// # Errors
-/// If it cannot be written, or must not replace what is there; then nothing is left of it.
+/// If the table cannot be written, or must not replace an existing file. Nothing of it is left then.
 pub fn write_to(
     path: &Path,
     replace: Replace,
@@ -30,7 +30,7 @@ pub fn write_to(
     file.finish()
 }
 
-/// A text as a field of a table: in quotes where it would be torn.
+/// Returns a text as a field of a table, in quotes where it would be torn.
 pub fn field(text: &str) -> String {
     if text.contains([',', '"', '\n', '\r']) {
         format!("\"{}\"", text.replace('"', "\"\""))

@@ -1,4 +1,4 @@
-//! Hashes of all that a run is a function of.
+//! Hashes of everything on which a run depends.
 
 use crate::{FileError, open_input};
 use sha2::{Digest as _, Sha256};
@@ -6,7 +6,7 @@ use std::fmt::Write;
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 
-/// A hash over parts; where one ends and the next begins is a part of it.
+/// A hash over parts; it depends on the borders between the parts.
 #[derive(Debug, Clone, Default)]
 pub struct Digest(Sha256);
 
@@ -30,7 +30,7 @@ impl Digest {
     /// Adds the bytes of a file.
     ///
     /// # Errors
-    /// If it cannot be read.
+    /// If the file cannot be read.
     pub fn with_file(mut self, file: impl AsRef<Path>) -> Result<Self, FileError> {
         let file = file.as_ref();
         let cannot_be_read =
@@ -47,7 +47,7 @@ impl Digest {
         }
     }
 
-    /// The hash, as 32 hexadecimal digits.
+    /// Returns the hash, as 32 hexadecimal digits.
     pub fn finish(self) -> String {
         let mut text = String::new();
         for byte in &self.0.finalize()[..16] {
@@ -57,7 +57,7 @@ impl Digest {
     }
 }
 
-/// The checksum of a line.
+/// Returns the checksum of a line.
 pub fn checksum(line: &str) -> String {
     Digest::default().with(line).finish()
 }

@@ -1,11 +1,11 @@
-//! What can be wrong with a file.
+//! Errors of files and folders.
 
 use crate::escaped::{escaped, shown};
 use crate::map_error::{ImageError, MapServerError};
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Why a file or a folder cannot be used: one sentence that names it.
+/// Reason why a file or a folder cannot be used: one sentence that names it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum FileError {
@@ -14,12 +14,12 @@ pub enum FileError {
     Io {
         /// The file or folder.
         path: PathBuf,
-        /// What was tried: "read", "written", …
+        /// The action that was tried: "read", "written", …
         action: &'static str,
-        /// What the operating system said.
+        /// Error of the operating system.
         reason: io::Error,
     },
-    /// The file is larger than anything of its kind.
+    /// The file is larger than any of its kind.
     #[error(
         "{}: has more than {limit} bytes, which is too large for a file of this kind",
         shown(path)
@@ -27,7 +27,7 @@ pub enum FileError {
     TooLarge {
         /// The file.
         path: PathBuf,
-        /// The most that is read \[bytes\].
+        /// Largest size that is read \[bytes\].
         limit: u64,
     },
     /// The file is not UTF-8.
@@ -35,10 +35,10 @@ pub enum FileError {
     NotText {
         /// The file.
         path: PathBuf,
-        /// Where the text ends \[bytes from the beginning\].
+        /// Position of the first byte that is not UTF-8 \[bytes from the beginning\].
         at: usize,
     },
-    /// Text that does not say what it should: RON, JSON, or YAML.
+    /// RON, JSON or YAML text does not hold the expected value.
     #[error("{}:{line}:{column}: {}{}", shown(path), in_field(field), escaped(message))]
     Syntax {
         /// The file.
@@ -47,9 +47,9 @@ pub enum FileError {
         line: usize,
         /// The column, counted from 1.
         column: usize,
-        /// The field in which it is, such as `obstacles[3].shape`; empty at the top.
+        /// The field with the error, such as `obstacles[3].shape`; empty at the top.
         field: String,
-        /// What is wrong.
+        /// Description of the error.
         message: String,
     },
     /// The last line of a file of JSON lines was cut short, as when its writer was stopped.
@@ -61,7 +61,7 @@ pub enum FileError {
         /// The line, counted from 1.
         line: usize,
     },
-    /// A line longer than any that is written.
+    /// A line is longer than any that covmap writes.
     #[error("{}:{line}: the line has more than {limit} bytes", shown(path))]
     LongLine {
         /// The file.
@@ -71,12 +71,12 @@ pub enum FileError {
         /// The longest line that is read \[bytes\].
         limit: u64,
     },
-    /// A value that cannot be written in the format of the file.
+    /// A value cannot be written in the format of the file.
     #[error("{}: cannot be written: {}", shown(path), escaped(message))]
     Unwritable {
         /// The file.
         path: PathBuf,
-        /// Why not.
+        /// Reason.
         message: String,
     },
     /// The image of a map is no image, or not what its header says.
@@ -84,7 +84,7 @@ pub enum FileError {
     Image {
         /// The image.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Error of the image.
         reason: ImageError,
     },
     /// The image that a map_server map names cannot be used.
@@ -92,9 +92,9 @@ pub enum FileError {
     MapImage {
         /// The YAML file.
         path: PathBuf,
-        /// What is wrong with the image, by its name.
+        /// Error of the image, with its name.
         reason: Box<FileError>,
-        /// Whether it was also looked for beside the YAML file, and is not there.
+        /// Whether the image is not beside the YAML file either.
         missing: bool,
     },
     /// The description of a map_server map says something impossible.
@@ -102,10 +102,10 @@ pub enum FileError {
     MapServer {
         /// The YAML file.
         path: PathBuf,
-        /// What is wrong with it.
+        /// Error of the description.
         reason: MapServerError,
     },
-    /// A file is there, which is not replaced without being told to.
+    /// A file exists, and is replaced only on request.
     #[error(
         "{}: is there already and holds something else; name another file, or replace it with --force",
         shown(path)
@@ -123,10 +123,10 @@ pub enum FileError {
     OtherRun {
         /// The folder.
         path: PathBuf,
-        /// The run that it holds; empty for one of an earlier covmap.
+        /// The run that the folder holds; empty for a run of an earlier covmap.
         run: String,
     },
-    /// A file in an output folder is not as covmap wrote it, so that the folder is not replaced.
+    /// A file in an output folder is not as covmap wrote it, so the folder is not replaced.
     #[error(
         "{}: is not as covmap wrote it; move it away, or replace all of the folder with --force",
         shown(path)
@@ -140,7 +140,7 @@ pub enum FileError {
     Folder {
         /// The folder.
         path: PathBuf,
-        /// Why not.
+        /// Reason.
         reason: &'static str,
     },
 }
@@ -161,7 +161,7 @@ fn other_run(run: &str) -> String {
 }
 
 impl FileError {
-    /// The file or folder that it is about.
+    /// Returns the file or folder of the error.
     pub fn path(&self) -> &Path {
         match self {
             Self::Io { path, .. }
@@ -188,14 +188,14 @@ impl FileError {
     }
 }
 
-/// The path of a field as `serde_path_to_error` found it; empty at the top, and where a key
+/// Returns the path of a field as `serde_path_to_error` found it; empty at the top, and where a key
 /// itself is wrong.
 pub(crate) fn field_name(path: &serde_path_to_error::Path) -> String {
     let name = path.to_string();
     if name == "." || name == "?" { String::new() } else { name }
 }
 
-/// A message of another library as part of one sentence: on one line, without a capital and
+/// Returns a message of another library as part of one sentence: on one line, without a capital or
 /// a full stop.
 pub(crate) fn one_line(message: &str) -> String {
     let words: Vec<&str> = message.split_whitespace().collect();

@@ -1,10 +1,10 @@
-//! Names and texts of others as part of one line.
+//! Foreign names and texts as part of one line.
 
 use std::fmt::{self, Display, Write as _};
 use std::path::Path;
 
-/// Shows a text on one line, in which no character rules the terminal: control characters, the
-/// separators of lines, and those that turn the direction of the text become `\u{1b}` and the like.
+/// Shows a text on one line, in which no character controls the terminal: control characters, line
+/// separators, and characters that change the direction of the text become `\u{1b}` and the like.
 ///
 /// ```
 /// assert_eq!(covmap_io::escaped("a\u{1b}[31m\nb").to_string(), r"a\u{1b}[31m\nb");
@@ -19,7 +19,7 @@ pub fn shown(path: &(impl AsRef<Path> + ?Sized)) -> impl Display {
     fmt::from_fn(move |f| write!(Escaping(f), "{}", path.display()))
 }
 
-/// Escapes what is written through it.
+/// Writer that escapes all text written through it.
 struct Escaping<'a, 'b>(&'a mut fmt::Formatter<'b>);
 
 impl fmt::Write for Escaping<'_, '_> {
@@ -38,7 +38,7 @@ impl fmt::Write for Escaping<'_, '_> {
     }
 }
 
-/// Whether a character does something else than to be shown.
+/// Returns whether a character has any effect beyond its own glyph.
 fn rules(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{2028}'..='\u{202e}')

@@ -10,7 +10,7 @@ use std::path::Path;
 
 /// Writes a value as JSON, a field a line.
 ///
-/// JSON has no NaN and no infinity: they are written as `null`.
+/// JSON has no NaN and no infinity: both are written as `null`.
 ///
 /// # Errors
 /// If the value has no form in JSON, or the file cannot be written.
@@ -21,11 +21,11 @@ pub fn write_json<T: Serialize>(path: impl AsRef<Path>, value: &T) -> Result<(),
     write_file(path, &bytes, Replace::Any)
 }
 
-/// The value that a JSON file holds.
+/// Reads the value of a JSON file.
 ///
 /// # Errors
-/// If the file cannot be read, has more than 64 MB, or does not hold such a value: with file,
-/// line, column, and field.
+/// If the file cannot be read, has more than 64 MB, or does not hold such a value. The error names
+/// file, line, column, and field.
 pub fn read_json<T: DeserializeOwned>(path: impl AsRef<Path>) -> Result<T, FileError> {
     let path = path.as_ref();
     let bytes = read_bytes(path, MAX_FILE)?;
@@ -36,7 +36,7 @@ pub(crate) fn unwritable(path: &Path, error: &serde_json::Error) -> FileError {
     FileError::Unwritable { path: path.to_path_buf(), message: one_line(&error.to_string()) }
 }
 
-/// The value, or the error and the field in which it is.
+/// Returns the value, or the error and the field that it is in.
 pub(crate) fn parse_json<T: DeserializeOwned>(
     bytes: &[u8],
 ) -> Result<T, (serde_json::Error, String)> {
@@ -49,7 +49,7 @@ pub(crate) fn parse_json<T: DeserializeOwned>(
     Ok(value)
 }
 
-/// An error in text that begins `lines_before` lines below the beginning of the file.
+/// Returns an error in text that begins `lines_before` lines below the beginning of the file.
 pub(crate) fn syntax(
     path: &Path,
     lines_before: usize,

@@ -16,10 +16,10 @@ const MAX_LINE: u64 = 64 << 20;
 /// The longest file that is read \[bytes\]: the trace of some 600,000 scans.
 const MAX_LINES: u64 = 1 << 30;
 
-/// Writes one value a line.
+/// Writer of one value a line.
 ///
-/// What was written is in the file after [`flush`](Self::flush), or when this is dropped;
-/// only `flush` tells whether that worked.
+/// All values are in the file after [`flush`](Self::flush), or when the writer is dropped; only
+/// `flush` reports a failure.
 #[derive(Debug)]
 pub struct JsonLines<W: Write> {
     path: PathBuf,
@@ -28,17 +28,17 @@ pub struct JsonLines<W: Write> {
 }
 
 impl JsonLines<BufWriter<File>> {
-    /// Lines in a new file, which can be read up to the last line while it is written.
+    /// Creates a new file of lines, which can be read up to the last line while it is written.
     ///
     /// # Errors
-    /// If anything has its name already, or the file cannot be made.
+    /// If the name is taken, or the file cannot be made.
     pub fn create(path: impl AsRef<Path>) -> Result<Self, FileError> {
         let path = path.as_ref();
         let file = create_new(path).map_err(FileError::io(path, "written"))?;
         Ok(Self::new(path, BufWriter::new(file)))
     }
 
-    /// Brings all that was written to the disk.
+    /// Flushes all values to the disk.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -49,7 +49,7 @@ impl JsonLines<BufWriter<File>> {
 }
 
 impl<W: Write> JsonLines<W> {
-    /// Lines into `out`; `path` names it in errors.
+    /// Creates a writer of lines into `out`; `path` names it in errors.
     pub fn new(path: impl Into<PathBuf>, out: W) -> Self {
         Self { path: path.into(), out, line: Vec::new() }
     }
@@ -67,7 +67,7 @@ impl<W: Write> JsonLines<W> {
         self.out.write_all(&self.line).map_err(FileError::io(&self.path, "written"))
     }
 
-    /// Hands all that was written to the operating system.
+    /// Hands all values to the operating system.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -76,26 +76,26 @@ impl<W: Write> JsonLines<W> {
     }
 }
 
-/// The values of a file of JSON lines, one after the other; empty lines are passed over.
+/// Reader of the values of a file of JSON lines, one after the other. Empty lines are skipped.
 ///
-/// A line that is wrong is an error and the reader goes on after it. A last line that was cut
-/// short is [`FileError::Truncated`]: all values before it are whole.
+/// A line without a valid value is an error, and the reader goes on after it. A last line that was
+/// cut short is [`FileError::Truncated`]: all values before it are whole.
 #[derive(Debug)]
 pub struct JsonLinesReader<T, R> {
     path: PathBuf,
     input: R,
     line: usize,
-    /// How much may still be read.
+    /// Number of bytes that may still be read.
     left: u64,
     bytes: Vec<u8>,
     ended: bool,
     values: PhantomData<fn() -> T>,
 }
 
-/// The values of a file of JSON lines.
+/// Reads the values of a file of JSON lines.
 ///
 /// # Errors
-/// If the file cannot be opened, or has more than 1 GB. Reading on, each value has its own error.
+/// If the file cannot be opened, or has more than 1 GB. Each value that is read has its own error.
 pub fn read_json_lines<T: DeserializeOwned>(
     path: impl AsRef<Path>,
 ) -> Result<JsonLinesReader<T, BufReader<File>>, FileError> {
@@ -108,7 +108,7 @@ pub fn read_json_lines<T: DeserializeOwned>(
 }
 
 impl<T: DeserializeOwned, R: BufRead> JsonLinesReader<T, R> {
-    /// The values in `input`; `path` names it in errors.
+    /// Creates a reader of the values in `input`; `path` names it in errors.
     pub fn new(path: impl Into<PathBuf>, input: R) -> Self {
         Self {
             path: path.into(),

@@ -1,9 +1,10 @@
 //! Files: RON, JSON lines, the maps of ROS, and folders of results.
 //!
-//! Nothing of Stachniss & Burgard (2003) is in here: [`read_ron`] and [`read_json_lines`] read what
-//! serde can, [`load_map_server`] reads floor plans, [`OutputFolder`] holds whole results.
+//! This crate holds nothing of Stachniss & Burgard (2003): [`read_ron`] and [`read_json_lines`]
+//! read any value that serde can read, [`load_map_server`] reads floor plans, and [`OutputFolder`]
+//! holds whole results.
 //!
-//! This crate knows nothing of worlds, models and planners.
+//! This crate knows nothing of worlds, models or planners.
 //!
 //! # Units
 //! Metres and radians; coverage in \[0, 1\].

@@ -1,27 +1,27 @@
-//! What is wrong with a map of map_server.
+//! Errors of the maps of map_server.
 
 use covmap::GridError;
 
-/// The most pixels of an image. What is unknown around the known part costs no memory, so this
+/// The most pixels of an image. The unknown border around the known part costs no memory, so this
 /// is more than a grid may have.
 const MAX_PIXELS: u64 = 1 << 26;
 
-/// What is wrong with the description of a map.
+/// Error of the description of a map.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapServerError {
     /// A key is missing.
     #[error("the key `{0}` is missing")]
     Missing(&'static str),
-    /// The origin has another number of values than three.
+    /// The origin does not have three values.
     #[error("the origin is [x, y, yaw], in metres and radians: three numbers, not {0}")]
     Origin(usize),
     /// The yaw is no angle.
     #[error("the origin has a yaw of {0}, which must be a finite number of radians")]
     Yaw(f64),
-    /// Nothing is known.
+    /// All pixels are unknown.
     #[error("all of its {0} × {1} pixels are unknown, so there is no map; look at the thresholds")]
     Unknown(usize, usize),
-    /// The thresholds are no thresholds.
+    /// The thresholds are out of order or out of range.
     #[error("free_thresh {free} and occupied_thresh {occupied} must be in order, and in 0..=1")]
     Thresholds {
         /// `free_thresh`.
@@ -29,27 +29,27 @@ pub enum MapServerError {
         /// `occupied_thresh`.
         occupied: f64,
     },
-    /// A mode that map_server does not have.
+    /// The mode is none of map_server.
     #[error("the mode `{0}` is none of trinary, scale, raw")]
     Mode(String),
-    /// Resolution or origin are no numbers for a map.
+    /// The resolution or the origin is invalid.
     #[error(transparent)]
     Grid(#[from] GridError),
 }
 
-/// What is wrong with an image.
+/// Error of an image.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ImageError {
     /// The file is empty.
     #[error("the image is empty")]
     Empty,
-    /// Something that is no PGM and no PNG image.
+    /// The file is neither a PGM nor a PNG image.
     #[error("is {0}; the image of a map is PNG or PGM (P5 or P2): convert it")]
     Unread(&'static str),
-    /// A number of a PGM header is missing or is none.
+    /// A number of a PGM header is missing or invalid.
     #[error("the header of the PGM image has no valid {0}")]
     Header(&'static str),
-    /// A largest sample that PGM does not have.
+    /// The largest sample is not one of PGM.
     #[error("the PGM image has a maxval of {0}, which must be in 1..=65535")]
     MaxValue(u64),
     /// Absurd dimensions.
@@ -95,7 +95,7 @@ pub enum ImageError {
 }
 
 impl ImageError {
-    /// The size of an image, if it is one.
+    /// Returns the size of an image, if the number of its pixels is in range.
     pub(crate) fn check_size(width: u64, height: u64) -> Result<(usize, usize), Self> {
         match (usize::try_from(width), usize::try_from(height), width.checked_mul(height)) {
             (Ok(columns), Ok(rows), Some(1..=MAX_PIXELS)) => Ok((columns, rows)),

@@ -1,4 +1,4 @@
-//! Writing files: each is there whole or not at all.
+//! Files that are written whole or not at all.
 
 use crate::FileError;
 use crate::read::kind_of;
@@ -7,27 +7,27 @@ use std::fs::{self, File, Metadata, OpenOptions};
 use std::io::{self, BufReader, BufWriter, Read, Write};
 use std::path::{Path, PathBuf};
 
-/// What may be replaced. Links, devices and what covmap did not write into its folders never are.
+/// The files and folders that may be replaced. Links, devices, and folders that covmap did not
+/// write are never replaced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Replace {
-    /// A file by the very same bytes; a folder by the same run.
+    /// A file only by the same bytes; a folder only by the same run.
     Same,
     /// Any file; any folder that covmap wrote.
     Any,
 }
 
 impl Replace {
-    /// `Any` if that was asked for.
+    /// Returns `Any` if the user asked for it, else `Same`.
     pub fn if_forced(force: bool) -> Self {
         if force { Self::Any } else { Self::Same }
     }
 }
 
-/// A file in the making: written beside its place, on the disk before it gets its name, and
-/// removed if it is dropped before [`finish`](Self::finish).
+/// A file in the making: written beside its place, on the disk before it gets its name, and removed
+/// if it is dropped before [`finish`](Self::finish).
 ///
-/// Nothing that is there is opened to be written, so that no link is followed and no other name
-/// of a file changes with it.
+/// No existing file is opened for writing: no link is followed, and no other name of a file changes with it.
 #[derive(Debug)]
 pub struct NewFile {
     path: PathBuf,
@@ -37,25 +37,25 @@ pub struct NewFile {
 }
 
 impl NewFile {
-    /// Begins a file, under a name that nothing has: `FILE.partial`, or with a number behind it.
+    /// Begins a file under an unused name: `FILE.partial`, or with a number behind it.
     ///
     /// # Errors
-    /// If something that is no file, or a file that must not be written, has the name of the new
-    /// one; if the file cannot be made.
+    /// If the name of the new file belongs to something that is no file, or to a file that must not
+    /// be written; if the new file cannot be made.
     pub fn create(path: impl AsRef<Path>, replace: Replace) -> Result<Self, FileError> {
         let path = path.as_ref().to_path_buf();
         if path.file_name().is_none() {
-            return Err(refused(&path, "it is no name for a file"));
+            return Err(refused(&path, "it is not a file name"));
         }
         present(&path)?;
         let (partial, file) = fresh(&path).map_err(FileError::io(&path, "written"))?;
         Ok(Self { path, replace, partial, out: BufWriter::new(file) })
     }
 
-    /// Gives the file its name, when all of it is on the disk.
+    /// Gives the file its name, once all of it is on the disk.
     ///
     /// # Errors
-    /// If it cannot be written, or must not replace what is there. Then nothing is left of it.
+    /// If the file cannot be written, or must not replace an existing one. Nothing of it is left then.
     pub fn finish(mut self) -> Result<(), FileError> {
         let path = self.path.clone();
         let written = || FileError::io(&path, "written");
@@ -66,7 +66,7 @@ impl NewFile {
                 let same = same(&path, &self.partial).map_err(FileError::io(&path, "read"))?;
                 return if same { Ok(()) } else { Err(FileError::Exists { path }) };
             }
-            // Whoever could not read the old file cannot read the new one.
+            // A user that could not read the old file cannot read the new one.
             let _ = self.out.get_ref().set_permissions(old.permissions());
         }
         fs::rename(&self.partial, &path).map_err(written())?;
@@ -87,7 +87,7 @@ impl Write for NewFile {
 
 impl Drop for NewFile {
     fn drop(&mut self) {
-        // After a rename there is none; what cannot be removed stays.
+        // After a rename there is no such file; one that cannot be removed stays.
         let _ = fs::remove_file(&self.partial);
     }
 }
@@ -103,12 +103,12 @@ pub fn write_file(path: impl AsRef<Path>, bytes: &[u8], replace: Replace) -> Res
     file.finish()
 }
 
-/// Makes a file under a name that nothing has, not even a link to nowhere.
+/// Makes a file under an unused name: not even a link to nowhere has it.
 pub(crate) fn create_new(path: &Path) -> io::Result<File> {
     OpenOptions::new().append(true).create_new(true).open(path)
 }
 
-/// The file with a name, without following links; `None` if nothing has the name.
+/// Returns the metadata of a file, without following links; `None` if nothing has the name.
 fn present(path: &Path) -> Result<Option<Metadata>, FileError> {
     let metadata = match fs::symlink_metadata(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
@@ -119,7 +119,7 @@ fn present(path: &Path) -> Result<Option<Metadata>, FileError> {
         return Err(refused(path, &format!("it is {kind}, which is not replaced")));
     }
     if metadata.permissions().readonly() {
-        return Err(refused(path, "it is there and must not be written"));
+        return Err(refused(path, "it exists and must not be written"));
     }
     Ok(Some(metadata))
 }
@@ -128,7 +128,7 @@ fn refused(path: &Path, reason: &str) -> FileError {
     FileError::Unwritable { path: path.to_path_buf(), message: reason.to_owned() }
 }
 
-/// A new file beside a path.
+/// Makes a new file beside a path.
 fn fresh(path: &Path) -> io::Result<(PathBuf, File)> {
     let mut tried = 0;
     loop {
@@ -145,7 +145,7 @@ fn fresh(path: &Path) -> io::Result<(PathBuf, File)> {
     }
 }
 
-/// Whether two files hold the same.
+/// Returns whether two files hold the same bytes.
 fn same(one: &Path, other: &Path) -> io::Result<bool> {
     let (one, other) = (File::open(one)?, File::open(other)?);
     if one.metadata()?.len() != other.metadata()?.len() {
@@ -160,7 +160,7 @@ fn same(one: &Path, other: &Path) -> io::Result<bool> {
     Ok(true)
 }
 
-/// Brings the names in the folder of a file to the disk, where the system can do that.
+/// Flushes the names in the folder of a file to the disk, where the system can do that.
 pub(crate) fn sync_folder(path: &Path) {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
     let _ = File::open(folder.unwrap_or(Path::new("."))).and_then(|folder| folder.sync_all());

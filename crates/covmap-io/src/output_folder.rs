@@ -1,4 +1,4 @@
-//! A folder of results that is there whole or not at all.
+//! A folder of results that is written whole or not at all.
 
 use crate::FileError;
 use crate::ledger::{Ledger, file_line, run_line};
@@ -9,17 +9,17 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// The file by which a folder that covmap wrote is known, with the list of what it wrote.
+/// The file that marks a folder as written by covmap, with the list of the files that covmap wrote.
 const MARKER: &str = ".covmap";
-/// What the old folder is called while the new one takes its place: a name that no person gives,
-/// since what has it is taken for covmap's.
+/// Suffix of the old folder while the new one takes its place. No user gives such a name, so covmap
+/// takes a folder of this name for its own.
 const ASIDE: &str = ".covmap-old";
 const MARKER_TEXT: &str = "covmap wrote this folder; the same run replaces it\n";
 
 /// A folder of results in the making.
 ///
-/// Results are written into `DIR.partial`, which [`finish`](Self::finish) renames to `DIR`.
-/// If this is dropped before, `DIR.partial` stays with what was written.
+/// Results are written into `DIR.partial`, which [`finish`](Self::finish) renames to `DIR`. A
+/// folder that is dropped before stays as `DIR.partial`.
 ///
 /// ```no_run
 /// use covmap_io::{OutputFolder, Replace, write_json};
@@ -34,11 +34,11 @@ pub struct OutputFolder {
     partial: PathBuf,
     run: String,
     replace: Replace,
-    /// Locked as long as this lives, so that no second covmap writes into the same folder.
+    /// Locked as long as the folder is in the making, so that no second covmap writes into it.
     marker: File,
 }
 
-/// What stands where a folder is to be.
+/// The state of the place of a folder.
 #[derive(Debug, PartialEq)]
 enum Present {
     Nothing,
@@ -49,15 +49,15 @@ enum Present {
 impl OutputFolder {
     /// Begins the folder `dir`: makes `DIR.partial`, and the folders above it.
     ///
-    /// `run` names, in one line, all that the results are a function of. A folder of the same
-    /// run is replaced: what covmap wrote, unless somebody changed it. Files that others put
-    /// there move into the new folder. A folder of another run is replaced, whole, only by
-    /// [`Replace::Any`]. A stale `DIR.partial` is treated alike.
+    /// `run` names, in one line, everything on which the results depend. A folder of the same run
+    /// is replaced, unless a file that covmap wrote was changed; files of others move into the new
+    /// folder. A folder of another run is replaced, whole, only by [`Replace::Any`]. A stale
+    /// `DIR.partial` is treated alike.
     ///
     /// # Errors
-    /// If `dir` is no name for a folder (`/`, `..`); if it, or `DIR.partial`, is there and must
-    /// not be replaced; if another covmap is writing it; if it cannot be made. Then nothing has
-    /// changed.
+    /// If `dir` is no name for a folder (`/`, `..`); if `dir` or `DIR.partial` exists and must not
+    /// be replaced; if another covmap is writing the folder; if the folder cannot be made. Nothing
+    /// has changed then.
     pub fn create(dir: impl AsRef<Path>, run: &str, replace: Replace) -> Result<Self, FileError> {
         let given = dir.as_ref();
         // Without `.` and slashes at the end.
@@ -89,31 +89,30 @@ impl OutputFolder {
         Ok(Self { target, partial, run, replace, marker })
     }
 
-    /// The path of a file of this folder while it is being made.
+    /// Returns the path of a file of this folder while the folder is in the making.
     pub fn path(&self, name: &str) -> PathBuf {
         self.partial.join(name)
     }
 
-    /// The folder in which files are while it is being made: `DIR.partial`.
+    /// Returns the folder that holds the files while they are made: `DIR.partial`.
     pub fn partial(&self) -> &Path {
         &self.partial
     }
 
-    /// The folder as it will be called: `DIR`.
+    /// Returns the final name of the folder: `DIR`.
     pub fn target(&self) -> &Path {
         &self.target
     }
 
-    /// Gives the folder its name when all of it is on the disk, replacing an old one, and
-    /// returns that name.
+    /// Gives the folder its name, once all of it is on the disk, and returns that name. An old
+    /// folder is replaced.
     ///
-    /// The old folder is renamed, the new one takes its place, and only then the old one is
-    /// removed: whatever happens, one of them is there whole. If the old one cannot be
-    /// removed, it stays as `DIR.covmap-old`.
+    /// The old folder is renamed, the new one takes its place, and only then is the old one removed: one of
+    /// them is always there whole. An old folder that cannot be removed stays as `DIR.covmap-old`.
     ///
     /// # Errors
-    /// If something that must not be replaced has come to stand there meanwhile, or a folder
-    /// cannot be renamed. Then all results stay in `DIR.partial`.
+    /// If something that must not be replaced has taken the name meanwhile, or a folder cannot be
+    /// renamed. All results stay in `DIR.partial` then.
     pub fn finish(mut self) -> Result<PathBuf, FileError> {
         self.list().map_err(FileError::io(&self.partial, "written"))?;
         let aside = beside(&self.target, ASIDE);
@@ -133,7 +132,7 @@ impl OutputFolder {
         }
         fs::rename(&self.target, &aside).map_err(FileError::io(&self.target, "replaced"))?;
         if let Err(error) = rename_new() {
-            // Back to what was; if even that fails, the old folder is still there, aside.
+            // Restores the old folder; if even that fails, it is still there, aside.
             let _ = fs::rename(&aside, &self.target);
             return Err(error);
         }
@@ -142,7 +141,7 @@ impl OutputFolder {
         Ok(self.target)
     }
 
-    /// Lists all files in the marker, and brings them to the disk.
+    /// Lists all files in the marker, and flushes them to the disk.
     fn list(&mut self) -> io::Result<()> {
         for name in names(&self.partial)?.iter().filter_map(|name| name.to_str()) {
             if name != MARKER {
@@ -153,8 +152,8 @@ impl OutputFolder {
         self.marker.sync_all()
     }
 
-    /// Takes what others put into the old folder into the new one. It is in both until the old
-    /// one is removed.
+    /// Links or copies the files of others from the old folder into the new one. They are in both
+    /// until the old one is removed.
     fn carry_over(&self, old: &Ledger) -> Result<(), FileError> {
         for name in strangers(&self.target, old)? {
             let (from, to) = (self.target.join(&name), self.partial.join(&name));
@@ -174,14 +173,14 @@ fn is_there(present: Present) -> bool {
     present != Present::Nothing
 }
 
-/// The path with something appended to its last name.
+/// Returns the path with something appended to its last name.
 fn beside(path: &Path, suffix: &str) -> PathBuf {
     let mut name = OsString::from(path);
     name.push(suffix);
     PathBuf::from(name)
 }
 
-/// Looks whether a folder may be made at `path`, without following links.
+/// Checks whether a folder may be made at `path`, without following links.
 fn look(path: &Path, run: &str, replace: Replace) -> Result<Present, FileError> {
     let refuse = |reason| Err(FileError::Folder { path: path.to_path_buf(), reason });
     let kind = match fs::symlink_metadata(path) {
@@ -209,8 +208,8 @@ fn look(path: &Path, run: &str, replace: Replace) -> Result<Present, FileError> 
     Ok(Present::Replaceable(ledger))
 }
 
-/// Checks that a folder holds the same run, that nobody changed what covmap wrote there, and
-/// that all else are files, which can be carried over.
+/// Checks that a folder holds the same run, that the files which covmap wrote there are unchanged,
+/// and that all else are files, which can be carried over.
 fn check(path: &Path, ledger: &Ledger, run: &str) -> Result<(), FileError> {
     if ledger.run != run {
         return Err(FileError::OtherRun { path: path.to_path_buf(), run: ledger.run.clone() });
@@ -227,8 +226,8 @@ fn check(path: &Path, ledger: &Ledger, run: &str) -> Result<(), FileError> {
     Ok(())
 }
 
-/// What others put into a folder. Of a folder that was not finished there is no list; all in it
-/// is taken for covmap's.
+/// Returns the names that others put into a folder. An unfinished folder has no list; everything in
+/// it is taken for covmap's.
 fn strangers(folder: &Path, ledger: &Ledger) -> Result<Vec<OsString>, FileError> {
     let mut names = names(folder).map_err(FileError::io(folder, "looked at"))?;
     names.retain(|name| {

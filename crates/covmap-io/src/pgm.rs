@@ -11,7 +11,7 @@ pub(crate) struct Pgm<'a> {
     samples: Samples<'a>,
 }
 
-/// The samples that were not read yet.
+/// The samples that are still to be read.
 #[derive(Debug)]
 enum Samples<'a> {
     Text(Numbers<'a>),
@@ -21,8 +21,7 @@ enum Samples<'a> {
 }
 
 impl<'a> Pgm<'a> {
-    /// The image that a file holds. Bytes behind the image do not matter, and nothing is
-    /// allocated.
+    /// Returns the image that a file holds. Bytes behind the image are ignored, and nothing is allocated.
     pub(crate) fn new(file: &'a [u8]) -> Result<Self, ImageError> {
         let (is_text, rest) = match file {
             [b'P', b'5', rest @ ..] => (false, rest),
@@ -68,7 +67,7 @@ impl<'a> Pgm<'a> {
             Samples::Text(numbers) => {
                 for _ in 0..width {
                     let value = numbers.next().ok_or(ImageError::NoSample { width, height })?;
-                    // Above all that are allowed, and so refused next.
+                    // Refused next, unless the largest sample is 65535.
                     row.push(u16::try_from(value).unwrap_or(u16::MAX));
                 }
             }
@@ -96,11 +95,11 @@ impl<'a> Numbers<'a> {
         std::str::from_utf8(number).ok()?.parse().ok()
     }
 
-    /// The binary samples behind the header of a file.
+    /// Returns the binary samples behind the header of a file.
     ///
-    /// One byte of white space ends a header, and a pixel may have any value: what looks like
-    /// a line end of two bytes, or like one more comment, may be pixels. Lines end with CR LF
-    /// if others of the header do, or if there are enough bytes behind both. A comment is one
+    /// One byte of white space ends a header, and a pixel may have any value: bytes that look like
+    /// a line end of two bytes, or like one more comment, may be pixels. The header ends with CR LF
+    /// if other lines of it do, or if there are enough bytes behind both. A comment counts as one
     /// if exactly the image is behind it.
     fn binary(&self, file: &[u8], expected: usize) -> Result<&'a [u8], ImageError> {
         let end = if self.0.first() == Some(&b'#') { from_line_end(self.0) } else { self.0 };
@@ -127,19 +126,19 @@ impl<'a> Numbers<'a> {
     }
 }
 
-/// What begins with the end of the first line.
+/// Returns the text from the end of its first line on.
 fn from_line_end(text: &[u8]) -> &[u8] {
     let end = text.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
     &text[end.unwrap_or(text.len())..]
 }
 
-/// How many lines end with CR LF.
+/// Returns the number of lines that end with CR LF.
 fn line_ends(text: &[u8]) -> usize {
     text.windows(2).filter(|pair| pair == b"\r\n").count()
 }
 
-/// The bytes of a P5 file with 8-bit samples, row by row from the **top** left, with a comment
-/// of one or more lines.
+/// Returns the bytes of a P5 file with 8-bit samples, row by row from the **top** left, with a
+/// comment of one or more lines.
 pub(crate) fn pgm_bytes(width: usize, height: usize, comment: &str, samples: &[u8]) -> Vec<u8> {
     let comment: String = comment.lines().map(|line| format!("# {line}\n")).collect();
     let mut bytes = format!("P5\n{comment}{width} {height}\n255\n").into_bytes();
@@ -152,7 +151,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Largest sample, and all rows.
+    /// Returns the largest sample, and all rows.
     fn parse(file: &[u8]) -> Result<(u16, Vec<Vec<u16>>), String> {
         let read = || {
             let mut pgm = Pgm::new(file)?;

@@ -1,4 +1,4 @@
-//! Opening and reading input files: at once or not at all, and never more than is sensible.
+//! Opening and reading of input files: at once or not at all, and up to a sensible size.
 
 use crate::FileError;
 use std::fs::{File, FileType, OpenOptions};
@@ -8,20 +8,20 @@ use std::path::Path;
 /// The largest file that is read as a whole \[bytes\].
 pub const MAX_FILE: u64 = 64 << 20;
 
-/// Opens a file to read it, whether it is a link to a file or the file itself.
+/// Opens a file for reading; a link to a file is followed.
 ///
-/// Pipes, devices, sockets and folders are refused at once: to open or to read them may take for
-/// ever. What stands there is looked at before it is opened, since opening a device may do
-/// something, and after, since it may have been exchanged meanwhile.
+/// Pipes, devices, sockets and folders are refused at once: opening or reading them may take for
+/// ever. The kind is checked before the file is opened, since opening a device may have effects,
+/// and after, since the file may have been exchanged meanwhile.
 ///
 /// # Errors
-/// If there is no such file, or it is none that can be read.
+/// If there is no such file, or it cannot be read.
 pub fn open_input(path: impl AsRef<Path>) -> Result<File, FileError> {
     let path = path.as_ref();
     open_file(path).map_err(FileError::io(path, "read"))
 }
 
-/// Finds out whether something is there, a file or a folder.
+/// Checks that a file or a folder exists.
 ///
 /// # Errors
 /// If there is nothing.
@@ -30,11 +30,11 @@ pub fn find(path: impl AsRef<Path>) -> Result<(), FileError> {
     std::fs::metadata(path).map(drop).map_err(FileError::io(path, "read"))
 }
 
-/// As [`open_input`], with the error of the system; [`io::ErrorKind::Other`] means that it is no
-/// file.
+/// Opens a file as [`open_input`] does, with the error of the system; [`io::ErrorKind::Other`]
+/// means that the path is no file.
 ///
 /// # Errors
-/// If there is no such file, or it is none that can be read.
+/// If there is no such file, or it cannot be read.
 pub fn open_file(path: &Path) -> io::Result<File> {
     check(std::fs::metadata(path)?.file_type())?;
     let file = at_once().read(true).open(path)?;
@@ -49,7 +49,7 @@ fn check(kind: FileType) -> io::Result<()> {
     Err(io::Error::other(format!("it is {}, not a file", kind_of(kind))))
 }
 
-/// Options that open, and read, without waiting for anybody.
+/// Returns options that open, and read, without blocking.
 fn at_once() -> OpenOptions {
     #[allow(unused_mut, reason = "changed where the flag is known")]
     let mut options = OpenOptions::new();
@@ -67,13 +67,13 @@ fn at_once() -> OpenOptions {
     options
 }
 
-/// The bytes of a file of at most `limit` bytes.
+/// Reads the bytes of a file of at most `limit` bytes.
 ///
-/// The size is looked at before anything is read; what lies about its size, such as a file of
-/// `/proc`, is cut off at the limit.
+/// The size is checked before anything is read. A file with a false size, such as one of `/proc`,
+/// is read no further than the limit.
 ///
 /// # Errors
-/// If the file cannot be opened by [`open_input`] or read, or is larger.
+/// If the file cannot be opened by [`open_input`] or read, or is larger than the limit.
 pub fn read_bytes(path: impl AsRef<Path>, limit: u64) -> Result<Vec<u8>, FileError> {
     let path = path.as_ref();
     let too_large = || FileError::TooLarge { path: path.to_path_buf(), limit };
@@ -90,7 +90,7 @@ pub fn read_bytes(path: impl AsRef<Path>, limit: u64) -> Result<Vec<u8>, FileErr
     Ok(bytes)
 }
 
-/// The first bytes of a file, at most `limit` of them: enough to tell what it is.
+/// Reads the first bytes of a file, at most `limit` of them: enough to tell its kind.
 ///
 /// # Errors
 /// If the file cannot be read.
@@ -102,7 +102,7 @@ pub fn read_beginning(path: impl AsRef<Path>, limit: usize) -> Result<Vec<u8>, F
     Ok(bytes)
 }
 
-/// The text of a file of at most `limit` bytes.
+/// Reads the text of a file of at most `limit` bytes.
 ///
 /// # Errors
 /// As [`read_bytes`], and if the file is not UTF-8.
@@ -114,7 +114,7 @@ pub fn read_text(path: impl AsRef<Path>, limit: u64) -> Result<String, FileError
     })
 }
 
-/// What something is that is no file.
+/// Returns the name of a kind that is no file.
 pub(crate) fn kind_of(kind: FileType) -> &'static str {
     #[cfg(unix)]
     {

@@ -11,23 +11,23 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::path::Path;
 
-/// Nesting beyond this depth is refused: no file of ours comes near, and the stack holds.
+/// The deepest nesting that is read: no file of covmap comes near, and the stack holds.
 const MAX_DEPTH: usize = 64;
 
-/// The value that a RON file holds. `Some(…)` may be left out (`implicit_some`).
+/// Reads the value of a RON file. `Some(…)` may be left out (`implicit_some`).
 ///
 /// # Errors
-/// If the file cannot be read, has more than 64 MB, or does not hold such a value: with file,
-/// line, column, and field.
+/// If the file cannot be read, has more than 64 MB, or does not hold such a value. The error names
+/// file, line, column, and field.
 pub fn read_ron<T: DeserializeOwned>(path: impl AsRef<Path>) -> Result<T, FileError> {
     let path = path.as_ref();
     parse_ron(path, &read_text(path, MAX_FILE)?)
 }
 
-/// The value that RON text holds; `path` names the text in errors.
+/// Reads the value of RON text; `path` names the text in errors.
 ///
 /// # Errors
-/// If the text does not hold such a value: with line, column, and field.
+/// If the text does not hold such a value. The error names line, column, and field.
 pub fn parse_ron<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, FileError> {
     let options = ron::Options::default()
         .with_default_extension(Extensions::IMPLICIT_SOME)
@@ -50,7 +50,7 @@ pub fn parse_ron<T: DeserializeOwned>(path: &Path, text: &str) -> Result<T, File
     Ok(value)
 }
 
-/// A value as RON, a field a line, below a comment of one or more lines; `path` names it in errors.
+/// Returns a value as RON, a field a line, below a comment of one or more lines; `path` names it in errors.
 ///
 /// # Errors
 /// If the value has no form in RON.

@@ -1,4 +1,4 @@
-//! A folder into which covmap writes file by file, beside what others have there.
+//! A folder into which covmap writes file by file, beside the files of others.
 
 use crate::FileError;
 use crate::ledger::{Ledger, file_line};
@@ -7,13 +7,13 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// The list of what covmap wrote. A folder with it is not replaced whole.
+/// The list of the files that covmap wrote. A folder with this list is not replaced whole.
 const LIST: &str = ".covmap-files";
 
 /// A folder that holds figures and tables, and perhaps other files.
 ///
-/// A file that covmap wrote, and nobody changed, is replaced by a new one of the same name; any
-/// other only by [`Replace::Any`].
+/// An unchanged file of covmap is replaced by a new one of the same name; any other file only by
+/// [`Replace::Any`].
 #[derive(Debug, Clone)]
 pub struct SharedFolder {
     dir: PathBuf,
@@ -21,22 +21,22 @@ pub struct SharedFolder {
 }
 
 impl SharedFolder {
-    /// Opens a folder, which is made if it is not there.
+    /// Opens a folder, and makes it if it is not there.
     ///
     /// # Errors
-    /// If it cannot be made.
+    /// If the folder cannot be made.
     pub fn open(dir: impl AsRef<Path>, replace: Replace) -> Result<Self, FileError> {
         let dir = dir.as_ref().to_path_buf();
         fs::create_dir_all(&dir).map_err(FileError::io(&dir, "made"))?;
         Ok(Self { dir, replace })
     }
 
-    /// The folder.
+    /// Returns the folder.
     pub fn dir(&self) -> &Path {
         &self.dir
     }
 
-    /// The path of a file in it.
+    /// Returns the path of a file in the folder.
     pub fn path(&self, name: &str) -> PathBuf {
         self.dir.join(name)
     }
@@ -44,17 +44,17 @@ impl SharedFolder {
     /// Writes a whole file.
     ///
     /// # Errors
-    /// If it cannot be written, or must not replace what is there.
+    /// If the file cannot be written, or must not replace an existing one.
     pub fn write(&self, name: &str, bytes: &[u8]) -> Result<(), FileError> {
         let replace = if self.is_ours(name)? { Replace::Any } else { self.replace };
         write_file(self.path(name), bytes, replace)?;
         self.list(name).map_err(FileError::io(&self.path(LIST), "written"))
     }
 
-    /// Removes a file that covmap wrote and nobody changed; any other only if it may be replaced.
+    /// Removes an unchanged file of covmap; any other file only if it may be replaced.
     ///
     /// # Errors
-    /// If it cannot be removed.
+    /// If the file cannot be removed.
     pub fn remove(&self, name: &str) -> Result<(), FileError> {
         let path = self.path(name);
         if fs::symlink_metadata(&path).is_err() {
@@ -71,13 +71,13 @@ impl SharedFolder {
         Ok(ledger.is_some_and(|ledger| ledger.is_as_written(&self.dir, name)))
     }
 
-    /// Appends a line to the list, which several processes may do.
+    /// Appends a line to the list; several processes may do so at once.
     fn list(&self, name: &str) -> io::Result<()> {
         let path = self.path(LIST);
         let mut list = match create_new(&path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                 if !fs::symlink_metadata(&path)?.is_file() {
-                    return Err(io::Error::other("it is no file of covmap"));
+                    return Err(io::Error::other("it is not a file of covmap"));
                 }
                 OpenOptions::new().append(true).open(&path)?
             }

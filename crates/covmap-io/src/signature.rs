@@ -1,6 +1,6 @@
-//! What a file is by how it begins.
+//! Kinds of files, by their first bytes.
 
-/// A kind of file that says what it is in its first bytes.
+/// A kind of file that its first bytes tell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Signature {
     /// A bag of ROS 1.
@@ -17,11 +17,11 @@ pub enum Signature {
     Jpeg,
     /// A GIF image.
     Gif,
-    /// A file of several, packed or not.
+    /// An archive of several files, packed or not.
     Archive,
-    /// Packed with gzip.
+    /// A file packed with gzip.
     Gzip,
-    /// Packed with bzip2, xz or Zstandard.
+    /// A file packed with bzip2, xz or Zstandard.
     Packed,
 }
 
@@ -45,7 +45,7 @@ const BEGINNINGS: [(&[u8], Signature); 15] = [
     (b"\x28\xb5\x2f\xfd", Packed),
 ];
 
-/// The kind of a file by its first bytes, some 300 of them; `None` if they do not tell.
+/// Returns the kind of a file by its first bytes, some 300 of them; `None` if they do not tell the kind.
 pub fn signature(head: &[u8]) -> Option<Signature> {
     let begins = |(beginning, _): &&(&[u8], Signature)| head.starts_with(beginning);
     let found = BEGINNINGS.iter().find(begins).map(|(_, kind)| *kind);

@@ -1,4 +1,4 @@
-//! Explores a room with a pillar to its end, and counts what the certificate says.
+//! Explores a room with a pillar to the end, and counts the cells of the certificate by status.
 //!
 //! ```text
 //! cargo run -p covmap-lab --example explore_a_room
@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mission = covmap_lab::mission(&world, &config, None, Limits::default())?;
     let mut robot = SimulatedRobot::new(&world, &config, 1)?;
 
-    // All that happens comes by here; `ControlFlow::Break` would end the run.
+    // The hook receives every event; `ControlFlow::Break` would end the run.
     let run = explore(&mission, &mut robot, &mut |event, view| {
         if let Event::Decision { decision, .. } = event {
             print!(

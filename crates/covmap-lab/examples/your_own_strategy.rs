@@ -1,4 +1,4 @@
-//! A strategy from outside: the most gain for a metre of way.
+//! A strategy of your own: the most gain for each metre of travel cost.
 //!
 //! ```text
 //! cargo run -p covmap-lab --example your_own_strategy
@@ -11,7 +11,7 @@ use covmap_plan::CandidateRecord;
 use covmap_world::{Extent, Scenario, World};
 use std::ops::ControlFlow;
 
-/// The most gain for a metre of way.
+/// Scores a candidate by its gain for each metre of travel cost.
 fn per_metre(candidate: &CandidateRecord) -> f64 {
     candidate.gain / (candidate.cost + 0.1)
 }

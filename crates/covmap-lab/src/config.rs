@@ -1,4 +1,4 @@
-//! All parameters of a simulated run: belief, behaviour, and the physics of the sensors.
+//! The configuration of a simulated run: belief, behaviour, and the physics of the sensors.
 
 use covmap_explore::{ParameterError, Parameters, RobotParameters};
 use covmap_model::{ModelParameters, SensorModel};
@@ -7,8 +7,10 @@ use covmap_sonar::{RingSpecification, SonarRing};
 use covmap_world::{PhysicsError, SonarPhysics};
 use serde::{Deserialize, Serialize};
 
-/// A robot, the physics of its sensors, what it makes of their readings, and how it plans: each section
-/// is defined by the crate that reads it. What a file of `configs` holds.
+/// All parameters of a simulated run: the content of a file of `configs`.
+///
+/// The sections are a robot, the physics of its sensors, its sensor model and its planner. The crate that
+/// reads a section defines it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Config {
@@ -16,7 +18,7 @@ pub struct Config {
     pub resolution: f64,
     /// The robot.
     pub robot: RobotParameters,
-    /// The simulated physics of its sensors; the belief knows nothing of it.
+    /// Simulated physics of the sensors, which the belief does not know.
     pub sonar: SonarPhysics,
     /// The sensor model and the footprint.
     pub model: ModelParameters,
@@ -24,10 +26,10 @@ pub struct Config {
     pub planner: PlannerParameters,
 }
 
-/// What is wrong with a configuration.
+/// Error in a configuration.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ConfigError {
-    /// What the robot is told.
+    /// The parameters of the robot.
     #[error(transparent)]
     Parameters(#[from] ParameterError),
     /// The physics.
@@ -36,7 +38,7 @@ pub enum ConfigError {
 }
 
 impl Config {
-    /// The default: a B21r, r = .1 m, 3 m usable range, ε = .6, IG_CL:0.1, and cones that
+    /// Returns the default: a B21r, r = .1 m, 3 m usable range, ε = .6, IG_CL:0.1, and cones that
     /// shrink from a half-angle of 12.5° near the sensor to 7.5° at 2.9 m.
     pub fn b21r() -> Self {
         Self {
@@ -48,19 +50,19 @@ impl Config {
         }
     }
 
-    /// The same parameters with a physics.
+    /// Returns the configuration with these parameters and this physics.
     pub fn of(parameters: Parameters, sonar: SonarPhysics) -> Self {
         let Parameters { resolution, robot, model, planner } = parameters;
         Self { resolution, robot, sonar, model, planner }
     }
 
-    /// What the robot is told: all but the physics.
+    /// Returns the parameters of the robot: all sections except the physics.
     pub fn parameters(&self) -> Parameters {
         let Self { resolution, robot, sonar: _, model, planner } = self.clone();
         Parameters { resolution, robot, model, planner }
     }
 
-    /// The ring and the sensor model, with all sections checked but the planner's, which
+    /// Builds the ring and the sensor model. Checks all sections except the planner's, which
     /// [`covmap_plan::Planner::new`] checks.
     ///
     /// # Errors

@@ -1,4 +1,4 @@
-//! What a run left unseen of what its robot could truly reach.
+//! The truly reachable cells that a run left unseen.
 
 use crate::Truth;
 use covmap::Cell;
@@ -7,26 +7,26 @@ use covmap_plan::Reach;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
-/// The truly reachable cells that the robot never knew to be free, nor found a way to; and what
-/// bars the way there.
+/// The truly reachable cells that the robot neither knew to be free nor found a way to, and the
+/// obstacles on the way there.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CutOff {
-    /// How many cells that are.
+    /// The number of these cells.
     pub cells: usize,
-    /// Cells on the border of what the robot could reach, beyond which it could truly drive, at
-    /// which it bumped.
+    /// The number of border cells where the robot bumped. A border cell is next to the cells that the robot
+    /// could reach, and truly leads to the cells that are cut off.
     pub bumps: usize,
-    /// Such cells that it took for covered, or too near to what it took for covered, where truly
-    /// nothing is.
+    /// The number of border cells with a phantom under the body: a cell that the robot took for covered, and
+    /// that is truly free.
     pub phantoms: usize,
-    /// Such cells that seemed too narrow, and that it did not try.
+    /// The number of border cells that seemed too narrow, and that the robot did not try.
     pub passages: usize,
-    /// Such cells of which it knew nothing.
+    /// The number of border cells that the robot did not know.
     pub unknown: usize,
 }
 
 impl CutOff {
-    /// Of a run.
+    /// Counts the cells that are cut off at the end of a run.
     pub fn new(truth: &Truth, mission: &Mission, run: &Run) -> Self {
         let (grid, steps) = (mission.grid, &truth.steps);
         let is_cut_off = |i: usize| truth.reachable[i] && run.reach[i] != Reach::Reached;
@@ -47,7 +47,7 @@ impl CutOff {
         cut_off
     }
 
-    /// Counts a cell on the border of what was reached.
+    /// Counts a cell on the border of the reached cells.
     fn count(&mut self, truth: &Truth, mission: &Mission, run: &Run, cell: Cell) {
         match run.reach.get(cell) {
             Some(Reach::Bumped) => self.bumps += 1,
@@ -58,7 +58,7 @@ impl CutOff {
     }
 }
 
-/// Whether a cell under the body at another is known to be covered, and truly is not.
+/// Whether the map takes a truly free cell under the body at `at` for covered.
 fn has_phantom(truth: &Truth, mission: &Mission, run: &Run, at: Cell) -> bool {
     let (grid, planner) = (mission.grid, &mission.config.planner);
     let center: Point2<f64> = grid.center(at);

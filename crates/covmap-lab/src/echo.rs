@@ -1,9 +1,9 @@
-//! What a sensor model makes of one echo, Fig. 3.
+//! The evidence of one echo by a sensor model, Fig. 3.
 
 use covmap_model::{Outcome, SensorModel};
 use std::fmt::Write;
 
-/// What the model makes of an echo, and for how many distances.
+/// Returns a table of the model's evidence of an echo, and its number of distances.
 pub fn echo_table(model: &SensorModel, range: f64) -> (String, usize) {
     let distances = echo_distances(model, range);
     let bins = model.parameters().bins;
@@ -19,8 +19,8 @@ pub fn echo_table(model: &SensorModel, range: f64) -> (String, usize) {
     (table, distances.len())
 }
 
-/// From r/2 to .20 m behind the end cell, as in Fig. 3, in steps of r/10 \[m\]; farther if
-/// the echo updates cells farther behind.
+/// Returns the distances from r/2 to .20 m behind the end cell, as in Fig. 3, in steps of r/10 \[m\];
+/// farther if the echo updates cells farther behind.
 pub fn echo_distances(model: &SensorModel, range: f64) -> Vec<f64> {
     let resolution = model.resolution();
     let behind = model.parameters().update.behind().max(0.20);

@@ -1,4 +1,4 @@
-//! Why work with files of the laboratory fails.
+//! Errors of the laboratory and its files.
 
 use crate::{ConfigError, OverrideError, SetupError};
 use covmap::{GridError, MapError, ReadOutError};
@@ -13,7 +13,7 @@ use covmap_survey::SurveyError;
 use covmap_world::WorldError;
 use std::path::{Path, PathBuf};
 
-/// Why something cannot be done, in one sentence that names the file if there is one.
+/// Error of the laboratory, in one sentence that names the file if there is one.
 #[derive(Debug, thiserror::Error)]
 pub enum LabError {
     /// A file cannot be read or written.
@@ -25,31 +25,31 @@ pub enum LabError {
     /// A log cannot be read.
     #[error("{error}{}", .other_sensor.map_or(String::new(), |name| format!("; try --sensor {name}")))]
     Log {
-        /// Why.
+        /// The error of the log.
         error: LogError,
         /// The sensor that the log has instead.
         other_sensor: Option<&'static str>,
     },
-    /// What a file says, or what it is, cannot be used.
+    /// A file or its content cannot be used.
     #[error("{}: {fault}", shown(file))]
     In {
         /// The file or folder.
         file: PathBuf,
-        /// Why.
+        /// The fault.
         fault: Fault,
     },
-    /// Something that is not of one file cannot be used.
+    /// A fault without a file.
     #[error(transparent)]
     Fault(#[from] Fault),
 }
 
-/// What is wrong with something, whatever file it is from.
+/// A fault, without the name of its file.
 #[derive(Debug, thiserror::Error)]
 pub enum Fault {
-    /// A configuration.
+    /// A configuration is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),
-    /// What a robot is told of itself.
+    /// The parameters of a robot.
     #[error(transparent)]
     Parameter(#[from] ParameterError),
     /// A mission in a world.
@@ -100,23 +100,23 @@ pub enum Fault {
     /// A part of a file.
     #[error("{part}: {fault}")]
     Part {
-        /// Which part.
+        /// Name of the part.
         part: &'static str,
-        /// What is wrong with it.
+        /// The fault of the part.
         fault: Box<Fault>,
     },
-    /// A length of too many cells: tables of them would fill the memory.
+    /// A length is too many cells: tables of these cells would fill the memory.
     #[error(
         "{field}: {length} m are more than {most} cells of {resolution} m; use a coarser resolution"
     )]
     TooManyCells {
-        /// The field of the configuration.
+        /// Name of the configuration's field.
         field: &'static str,
-        /// What it says \[m\].
+        /// The length \[m\].
         length: f64,
-        /// The most cells that it may be.
+        /// Largest allowed length in cells.
         most: f64,
-        /// Their side \[m\].
+        /// Side of a cell \[m\].
         resolution: f64,
     },
     /// No area of a map is free.
@@ -128,9 +128,9 @@ pub enum Fault {
     /// The log has scans of too many different rings.
     #[error("line {line}: more than {most} different sensors")]
     ManySensors {
-        /// Where the one too many is.
+        /// Line with the one sensor too many.
         line: usize,
-        /// The most that are read.
+        /// Largest number of sensors that are read.
         most: usize,
     },
     /// The log has no scan.
@@ -144,63 +144,63 @@ pub enum Fault {
         "line {line}: more than {most} readings are not held at the same time; cut the log, or thin it out"
     )]
     ManyReadings {
-        /// Where the one too many is.
+        /// Line with the one reading too many.
         line: usize,
-        /// The most that are held.
+        /// Largest number of readings that are held.
         most: usize,
     },
     /// The robot's path does not fit into a grid.
     #[error("the robot was between ({:.1}, {:.1}) and ({:.1}, {:.1}): {error}", low.0, low.1, high.0, high.1)]
     Extent {
-        /// The lower left corner of the robot's path \[m\].
+        /// Lower left corner of the robot's path \[m\].
         low: (f64, f64),
-        /// The upper right corner \[m\].
+        /// Upper right corner of the robot's path \[m\].
         high: (f64, f64),
-        /// Why.
+        /// The error of the grid.
         error: GridError,
     },
     /// A number is out of its range.
     #[error("{field}: {value} must lie in {low}..={high}")]
     Range {
-        /// The field.
+        /// Name of the field.
         field: &'static str,
-        /// What it says.
+        /// Value of the field.
         value: usize,
-        /// The least.
+        /// Smallest allowed value.
         low: usize,
-        /// The most.
+        /// Largest allowed value.
         high: usize,
     },
     /// A field must not be negative, or not be infinite.
     #[error("{field} must be {must}")]
     Number {
-        /// The field or fields.
+        /// Names of the field or fields.
         field: &'static str,
-        /// What a number there must be.
+        /// Condition that the numbers must fulfil.
         must: &'static str,
     },
-    /// A map of map_server is turned or shifted.
+    /// A map of map_server is to be turned or shifted.
     #[error("only scenarios can be turned and shifted")]
     MapMoved,
     /// A fit has nothing to fit to.
     #[error("training needs at least one entry")]
     NoTraining,
-    /// The explorer of a fit has another robot than what is fitted.
+    /// The explorer of a fit has another robot than the configuration that is fitted.
     #[error(
         "explorer: {} has another robot than {}; the model is of one ring of sensors",
         shown(explorer),
         shown(config)
     )]
     OtherRobot {
-        /// The file of the explorer.
+        /// File of the explorer.
         explorer: PathBuf,
-        /// The file of what is fitted.
+        /// File of the configuration that is fitted.
         config: PathBuf,
     },
     /// The folder has no trace.
     #[error("{0}")]
     NoTrace(&'static str),
-    /// The trace has no such decision.
+    /// The trace has no decision with this number.
     #[error("there is no decision {step}: the trace has {}", decisions_in_words(*.decisions))]
     NoDecision {
         /// The decision that was asked for, counted from 0.
@@ -214,21 +214,21 @@ pub enum Fault {
     /// The trace was written by another version.
     #[error("a trace of version {found}; this covmap reads {oldest} to {newest}")]
     TraceVersion {
-        /// The version of the trace.
+        /// Version of the trace.
         found: u32,
-        /// The oldest version that is read.
+        /// Oldest version that can be read.
         oldest: u32,
-        /// The newest one.
+        /// Newest version that can be read.
         newest: u32,
     },
-    /// A scan of a trace does not fit to the ring.
+    /// A scan of a trace does not fit the ring.
     #[error("scan {number} has {ranges} ranges, but the ring has {beams} sensors")]
     Ranges {
-        /// The number of the scan.
+        /// Number of the scan.
         number: usize,
-        /// The number of its ranges.
+        /// The number of ranges of the scan.
         ranges: usize,
-        /// The number of sensors.
+        /// The number of sensors of the ring.
         beams: usize,
     },
     /// The replay of a trace differs from it.
@@ -236,15 +236,15 @@ pub enum Fault {
         "line {line}: the replay differs from here on; the trace was changed, or written by another version of covmap"
     )]
     Differs {
-        /// The first line that differs.
+        /// First line that differs.
         line: usize,
     },
     /// A place is outside of the map.
     #[error("({x}, {y}) is not in the map")]
     NotInMap {
-        /// Where \[m\].
+        /// x of the place \[m\].
         x: f64,
-        /// Where \[m\].
+        /// y of the place \[m\].
         y: f64,
     },
     /// A file was written by another version.
@@ -252,7 +252,7 @@ pub enum Fault {
     OtherVersion,
 }
 
-/// Something takes more memory than is allowed.
+/// Error of work that would take more memory than is allowed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error(
     "{what} would take about {} of memory, more than {}; use a coarser resolution, or allow more with --memory",
@@ -260,15 +260,15 @@ pub enum Fault {
     amount(*limit)
 )]
 pub struct MemoryError {
-    /// What takes it, in words.
+    /// The work or the data, in words.
     pub what: String,
-    /// How much it takes \[bytes\].
+    /// Estimated memory \[bytes\].
     pub bytes: u64,
-    /// How much is allowed \[bytes\].
+    /// Allowed memory \[bytes\].
     pub limit: u64,
 }
 
-/// An amount of memory as one would say it.
+/// An amount of memory in words.
 fn amount(bytes: u64) -> String {
     let gib = bytes as f64 / f64::from(1 << 30);
     if gib < 1.0 { format!("{:.0} MiB", 1024.0 * gib) } else { format!("{gib:.1} GiB") }
@@ -285,7 +285,7 @@ fn decisions_in_words(decisions: usize) -> String {
 /// The result of work with files of the laboratory.
 pub type Result<T, E = LabError> = std::result::Result<T, E>;
 
-/// Says of which file a fault is.
+/// Names the file of a fault.
 pub fn about<E: Into<Fault>>(file: &Path) -> impl Fn(E) -> LabError {
     move |fault| LabError::In { file: file.to_owned(), fault: fault.into() }
 }
@@ -296,7 +296,7 @@ impl From<LogError> for LabError {
     }
 }
 
-/// Faults of parts are faults of the laboratory, of no file.
+/// Errors of parts are errors of the laboratory, without a file.
 macro_rules! of_parts {
     ($($part:ty),*) => {
         $(impl From<$part> for LabError {

@@ -1,4 +1,4 @@
-//! One run in a simulated world, from its setup to its numbers.
+//! An experiment: one run in a simulated world, from its setup to its numbers.
 
 use crate::{
     Config, ConfigError, CutOff, SetupError, SimulatedRobot, Summary, TraceHeader, Truth, mission,
@@ -9,20 +9,20 @@ use covmap_world::{SonarPhysics, World};
 use nalgebra::Isometry2;
 use std::ops::ControlFlow;
 
-/// What is done in a world: the mission of the robot, and what the robot is not told, the physics of its
-/// sensors and the seed of their noise.
+/// A mission in a simulated world, with the physics of the sensors and the seed of their noise, which the
+/// robot does not know.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Experiment {
-    /// What the robot is told.
+    /// Mission of the robot.
     pub mission: Mission,
-    /// How its sensors are simulated.
+    /// Physics of the simulated sensors.
     pub sonar: SonarPhysics,
     /// Seed of the noise.
     pub seed: u64,
 }
 
 impl Experiment {
-    /// An experiment with a configuration, begun as [`mission`] says.
+    /// Returns an experiment with a configuration; the mission is that of [`mission`].
     ///
     /// # Errors
     /// If the configuration is invalid or the robot cannot stand at the start.
@@ -36,7 +36,7 @@ impl Experiment {
         Ok(Self { mission: mission(world, config, start, limits)?, sonar: config.sonar, seed })
     }
 
-    /// The robot that does it.
+    /// Returns the robot of the experiment.
     ///
     /// # Errors
     /// If the configuration is invalid.
@@ -45,12 +45,12 @@ impl Experiment {
         SimulatedRobot::new(world, &config, self.seed)
     }
 
-    /// What its trace begins with.
+    /// Returns the header of the experiment's trace.
     pub fn header(&self, world: &World) -> TraceHeader {
         TraceHeader::new(&self.mission, &self.sonar, world.name(), self.seed)
     }
 
-    /// Lets the robot explore; the hook sees all that happens.
+    /// Lets the robot explore; the hook receives every event.
     ///
     /// # Errors
     /// If the configuration or the mission is invalid.
@@ -62,8 +62,8 @@ impl Experiment {
         Ok(explore(&self.mission, &mut self.robot(world)?, hook)?)
     }
 
-    /// The numbers of a run, of which `map` is the map as it is read; `seconds` and `hash` are known to
-    /// the caller.
+    /// Returns the numbers of a run, where `map` is the map of the run as it is read; the caller knows
+    /// `seconds` and `hash`.
     pub fn summary(
         &self,
         (world, truth): (&World, &Truth),

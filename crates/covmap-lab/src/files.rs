@@ -18,22 +18,23 @@ use nalgebra::{Isometry2, Point2, Vector2};
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-/// The most cells that a beam, or the robot, may be long: beyond, tables of them fill the memory.
+/// Largest length of a beam or of the robot's radius, in cells: tables of more would fill the memory.
 const MOST_CELLS_ALONG: f64 = 1500.0;
 
-/// A configuration that a program has built in, so that it works in any folder.
+/// A configuration that is built into a program, which so works in any folder.
 #[derive(Debug, Clone, Copy)]
 pub struct BuiltIn {
-    /// Its name, for errors.
+    /// Name for errors.
     pub name: &'static str,
-    /// Its text, in RON.
+    /// Text in RON.
     pub text: &'static str,
 }
 
-/// The configuration in a file, or else one that is built in; and its name for errors.
+/// Reads the configuration in a file, or the built-in one if there is no file; also returns its name
+/// for errors.
 ///
 /// # Errors
-/// If it cannot be read.
+/// If the configuration cannot be read.
 pub fn config(file: Option<&Path>, or: BuiltIn) -> Result<(Config, PathBuf)> {
     match file {
         Some(file) => Ok((read_ron(file)?, file.to_owned())),
@@ -41,21 +42,21 @@ pub fn config(file: Option<&Path>, or: BuiltIn) -> Result<(Config, PathBuf)> {
     }
 }
 
-/// A file that is named in another one.
+/// Returns the path of a file that another file names.
 pub fn beside(path: &Path, named: &Path) -> PathBuf {
     path.parent().unwrap_or(Path::new("")).join(named)
 }
 
-/// The world in a scenario or in a map of map_server. What a file does not say about
-/// surfaces is `surface`.
+/// Reads the world in a scenario or in a map of map_server. `surface` is the surface of everything
+/// without one in the file.
 ///
 /// # Errors
-/// If there is none.
+/// If the file is no world.
 pub fn world(file: &Path, surface: Surface) -> Result<World> {
     Ok(read(file, surface)?.world)
 }
 
-/// The world of a scenario in a file, turned \[rad\] and shifted \[m\].
+/// Returns the world of a scenario in a file, turned \[rad\] and shifted \[m\].
 ///
 /// # Errors
 /// If the scenario is impossible.
@@ -65,7 +66,7 @@ pub fn moved(
     shift: (f64, f64),
     (file, surface): (&Path, Surface),
 ) -> Result<World> {
-    // What is wrong with the scenario is said in its own coordinates.
+    // Errors name places in the scenario's own coordinates.
     let world = World::from_scenario(scenario, surface).map_err(about(file))?;
     match placed(scenario, turn, shift) {
         Cow::Borrowed(_) => Ok(world),
@@ -73,7 +74,7 @@ pub fn moved(
     }
 }
 
-/// A scenario turned \[rad\] and shifted \[m\]: as it is, if both are 0.
+/// Returns a scenario turned \[rad\] and shifted \[m\]; as it is if both are 0.
 pub fn placed(scenario: &Scenario, turn: f64, shift: (f64, f64)) -> Cow<'_, Scenario> {
     let shift = Vector2::new(shift.0, shift.1);
     if turn == 0.0 && shift == Vector2::zeros() {
@@ -85,12 +86,12 @@ pub fn placed(scenario: &Scenario, turn: f64, shift: (f64, f64)) -> Cow<'_, Scen
 /// Checks all sections of a configuration, and that its tables will not be absurdly large.
 ///
 /// # Errors
-/// If anything is wrong with it.
+/// If anything is wrong with the configuration.
 pub fn check(config: &Config, name: &Path) -> Result<SensorModel> {
     check_config(config).map_err(in_file(name))
 }
 
-/// The same for a configuration of no file.
+/// Checks a configuration without a file.
 pub(crate) fn check_config(config: &Config) -> Result<SensorModel> {
     let (_, model) = config.build()?;
     let resolution = config.resolution;
@@ -103,7 +104,7 @@ pub(crate) fn check_config(config: &Config) -> Result<SensorModel> {
             );
         }
     }
-    // The planner checks its parameters when it is made: make one for a single cell.
+    // A planner checks its parameters when it is made: make one for a single cell.
     let grid = Grid::new(Point2::origin(), config.resolution, 1, 1)?;
     memory::check_run(&grid, config, 1)?;
     check_planner(config, &model, grid).map_err(Fault::from)?;
@@ -116,7 +117,7 @@ fn check_planner(config: &Config, model: &SensorModel, grid: Grid) -> Result<(),
     planner.map(drop)
 }
 
-/// The mission to explore the world in a file, with the configuration in another.
+/// Returns the mission to explore the world in a file, with the configuration in another file.
 ///
 /// # Errors
 /// If the configuration is invalid, or the robot cannot stand at the start.
@@ -135,7 +136,7 @@ pub fn mission(
     })
 }
 
-/// Says of which file a fault is that is of none yet.
+/// Names the file in an error without a file.
 pub(crate) fn in_file(file: &Path) -> impl Fn(LabError) -> LabError {
     move |error| match error {
         LabError::Fault(fault) => about(file)(fault),

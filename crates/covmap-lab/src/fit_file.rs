@@ -1,4 +1,4 @@
-//! The file that says what is fitted to what, and the examples that it describes.
+//! The file of a fit, and the examples that it describes.
 
 use crate::error::{Fault, Result, about};
 use crate::files::{self, beside};
@@ -19,46 +19,46 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
-/// Not more scans than this in one example, so that they fit into the memory.
+/// Largest number of scans in one example, so that they fit into the memory.
 const MOST_SCANS: usize = 1_000_000;
 
-/// What is fitted to what. Files are named relative to this one.
+/// File of a fit. Its file names are relative to the file itself.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FitFile {
-    /// Robot, sonar, the model to begin with, and the planner.
+    /// Configuration with the robot, the sonar, the model to begin with, and the planner.
     pub config: PathBuf,
-    /// Who explores the simulated worlds; without it `config`. One explorer for several fits gives
-    /// them the same scans.
+    /// Configuration of the robot that explores the simulated worlds; `config` by default. Several fits
+    /// with one explorer have the same scans.
     pub explorer: Option<PathBuf>,
     /// Parameters of the explorer that differ from its file, by their paths, such as
     /// `planner.scan_spacing`: see [`Config::overridden`].
     #[serde(default)]
     pub explorer_overrides: BTreeMap<String, Value>,
-    /// The side of a cell where an example does not say another \[m\].
+    /// Side of a cell, unless an example has its own \[m\].
     pub resolution: f64,
     /// Seed of the starts.
     pub seed: u64,
-    /// How many local searches.
+    /// The number of local searches.
     pub starts: usize,
-    /// The most evaluations of each.
+    /// Largest number of evaluations of each search.
     pub evaluations: usize,
-    /// What the likelihood is the mean of.
+    /// Weighting of the cells in the mean likelihood.
     pub weighting: Weighting,
     /// The free parameters.
     pub axes: Vec<Axis>,
-    /// What is fitted to.
+    /// Sources of the examples to fit to.
     pub training: Vec<Source>,
-    /// What the result is checked on.
+    /// Sources of the examples to check the result on.
     pub held_out: Vec<Source>,
 }
 
-/// Where an example comes from.
+/// Source of an example.
 #[derive(Debug, Deserialize)]
 pub enum Source {
     /// A simulated exploration.
     Simulated(Simulated),
-    /// The log of a robot, and a survey of where it was.
+    /// The log of a robot, and a survey of the building.
     Recorded(Recorded),
 }
 
@@ -68,42 +68,42 @@ pub enum Source {
 pub struct Simulated {
     /// The scenario, or a map of map_server.
     pub scenario: PathBuf,
-    /// The side of a cell \[m\]; without it that of the file.
+    /// Side of a cell \[m\]; that of the fit's file by default.
     pub resolution: Option<f64>,
-    /// The surface of everything in the world; without it what the scenario says, and outside of
-    /// it the configuration.
+    /// Surface of everything in the world. By default the surfaces are those of the scenario, and that of
+    /// the configuration where the scenario has none.
     pub surface: Option<Surface>,
-    /// By how much it is turned \[rad\].
+    /// Angle by which the world is turned \[rad\].
     pub turn: f64,
-    /// By how much it is shifted \[m\].
+    /// Distances by which the world is shifted \[m\].
     pub shift: (f64, f64),
-    /// Who explores it.
+    /// Strategy of the exploration.
     pub strategy: Strategy,
-    /// How many scans; without it as many as it takes until the certificate.
+    /// Largest number of scans; without it the run goes on to its certificate.
     pub scans: Option<usize>,
     /// Seed of the noise.
     pub seed: u64,
 }
 
-/// A configuration, and the file that it is from.
+/// A configuration and its file.
 #[derive(Debug, Clone)]
 pub struct Named {
     /// The configuration.
     pub config: Config,
-    /// Its file.
+    /// The file of the configuration.
     pub file: PathBuf,
 }
 
 /// A fit's file with the configurations that it names.
 #[derive(Debug)]
 pub struct FitPlan {
-    /// What the file says.
+    /// The content of the file.
     pub file: FitFile,
-    /// Where it is.
+    /// The path of the file.
     path: PathBuf,
-    /// What the fit begins with.
+    /// Configuration with the model that the fit begins with.
     pub begin: Named,
-    /// Who explores.
+    /// Configuration of the robot that explores.
     pub explorer: Named,
 }
 
@@ -118,10 +118,10 @@ impl Named {
 }
 
 impl FitPlan {
-    /// Reads and checks the file, and what it names.
+    /// Reads and checks the file, and the files that it names.
     ///
     /// # Errors
-    /// If anything is wrong with them.
+    /// If anything is wrong with these files.
     pub fn read(path: &Path) -> Result<Self> {
         let file: FitFile = read_ron(path)?;
         let begin = Named::read(path, &file.config, file.resolution)?;
@@ -154,10 +154,10 @@ impl FitPlan {
         Ok(plan)
     }
 
-    /// The examples of some sources, made side by side.
+    /// Makes the examples of some sources, in parallel.
     ///
     /// # Errors
-    /// If one cannot be made.
+    /// If an example cannot be made.
     pub fn examples(&self, sources: &[Source], watch: &dyn Watch) -> Result<Vec<Example>> {
         let example = |source: &Source| {
             watch.begin(&format!("reading {}", source.file().display()));
@@ -171,7 +171,7 @@ impl FitPlan {
         sources.par_iter().map(example).collect()
     }
 
-    /// Fits the model to examples: as many local searches as the file says.
+    /// Fits the model to examples, with the number of local searches in the file.
     ///
     /// # Errors
     /// If the fit cannot begin.
@@ -199,7 +199,7 @@ impl FitPlan {
         Ok(fit(training, model, &settings, || uniform(&mut random), report)?)
     }
 
-    /// Finds what is wrong with a source before any work is done.
+    /// Checks a source before any work is done.
     fn check(&self, source: &Source) -> Result<()> {
         match source {
             Source::Simulated(source) => source.task(&self.path, &self.explorer).map(|_| ()),
@@ -217,7 +217,7 @@ fn in_range(path: &Path, field: &'static str, value: usize, high: usize) -> Resu
 }
 
 impl Source {
-    /// The file that it is made from.
+    /// Returns the file that the example is made from.
     pub fn file(&self) -> &Path {
         match self {
             Self::Simulated(source) => &source.scenario,
@@ -241,7 +241,7 @@ impl Simulated {
         Ok((world, Experiment { mission, sonar: config.sonar, seed: self.seed }))
     }
 
-    /// The world; what no file says about surfaces is `surface`.
+    /// The world; `surface` is the surface of everything without one in the files.
     fn world(&self, path: &Path, surface: Surface) -> Result<World> {
         let moves = [self.turn, self.shift.0, self.shift.1];
         if !moves.iter().all(|v| v.is_finite()) || self.shift.0 < 0.0 || self.shift.1 < 0.0 {
@@ -262,7 +262,7 @@ impl Simulated {
         World::from_scenario(&placed.with_surface(surface), surface).map_err(about(&file))
     }
 
-    /// Lets the robot explore, and takes what it measured with the truth.
+    /// Lets the robot explore; the example is its scans with the truth.
     fn example(
         &self,
         path: &Path,

@@ -1,9 +1,9 @@
 //! The laboratory: robots in simulated worlds, the truth about these, and scores against it.
 //!
 //! Section 5 of Stachniss & Burgard (2003). [`mission`] sets a robot into a world, [`SimulatedRobot`] senses
-//! and drives there for [`covmap_explore::explore`], and [`Truth`] says how good the map is that comes out.
+//! and drives there for [`covmap_explore::explore`], and [`Truth`] scores the map of the run.
 //!
-//! This crate knows nothing of files, terminals and clocks.
+//! This crate does not depend on terminals or clocks.
 //!
 //! # Units
 //! Metres, radians, nats, seconds of simulated time.

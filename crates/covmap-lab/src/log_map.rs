@@ -1,4 +1,4 @@
-//! The map of a log: once through it for its extent, and once for its evidence.
+//! The map of a log, which is read once for its extent and once for its evidence.
 
 use crate::error::{Fault, LabError, Result, about};
 use crate::watch::Watch;
@@ -11,17 +11,19 @@ use nalgebra::{Isometry2, Point2, Vector2};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Cells around what can be seen.
+/// Width of the margin around the cells that can be seen, in cells.
 const MARGIN: usize = 2;
-/// A log has no more rings: lasers, and longest ranges that change on its way.
+/// Largest number of rings of a log: of its lasers, and of longest ranges that change on the way.
 const MOST_RINGS: usize = 16;
 
-/// Which frames are used: those that moved or turned enough.
+/// Stride between used frames.
+///
+/// A frame is used if the robot moved or turned enough since the last used one.
 #[derive(Debug, Clone, Copy)]
 pub struct Stride {
-    /// Metres.
+    /// Least distance \[m\].
     pub every: f64,
-    /// Radians.
+    /// Least turn \[rad\].
     pub turn: f64,
 }
 
@@ -38,18 +40,18 @@ impl Stride {
 /// A log that is read again and again.
 #[derive(Debug)]
 pub struct Log {
-    /// Its file or folder.
+    /// File or folder of the log.
     pub path: PathBuf,
-    /// How it is read.
+    /// Options of the reader.
     pub options: LogOptions,
 }
 
-/// What is known of a log after reading it once.
+/// Overview of a log, after reading it once.
 #[derive(Debug)]
 pub struct LogOverview {
-    /// One for each sensor, and for each of its longest ranges.
+    /// A ring for each sensor, and for each of its longest ranges.
     pub rings: Vec<Arc<SonarRing>>,
-    /// What there is to know of it.
+    /// The account of the log.
     pub account: Account,
     bounds: Bounds,
 }
@@ -66,17 +68,17 @@ impl Bounds {
         *self = Self { low: self.low.inf(&at), high: self.high.sup(&at) };
     }
 
-    /// Adds where the robot drove.
+    /// Adds the places where the robot drove.
     fn add_ends(&mut self, legs: &[Leg]) {
         legs.iter().filter(|leg| !leg.jump).for_each(|leg| self.add(leg.to));
     }
 }
 
 impl Log {
-    /// Reads the log once; `None` if that was stopped.
+    /// Reads the log once; `None` if the watch stopped this.
     ///
     /// # Errors
-    /// If it cannot be read, is empty, or has too many different sensors.
+    /// If the log cannot be read, is empty, or has too many different sensors.
     pub fn overview(&self, watch: &dyn Watch) -> Result<Option<LogOverview>> {
         let mut reader = self.open()?;
         let (mut follower, mut frames) = (Follower::default(), 0u64);
@@ -109,10 +111,10 @@ impl Log {
         LogReader::open(&self.path, &self.options).map_err(hint)
     }
 
-    /// Reads the log once more, into the map, to its end or until that is stopped.
+    /// Reads the log once more, into the map, to its end or until the watch stops this.
     ///
     /// # Errors
-    /// If it cannot be read, or was changed meanwhile.
+    /// If the log cannot be read, or was changed meanwhile.
     pub fn map(&self, mut mapper: Mapper, watch: &dyn Watch) -> Result<Mapper> {
         let mut reader = self.open()?;
         for frame in &mut reader {
@@ -137,7 +139,7 @@ impl Log {
     }
 }
 
-/// Names the option that reads what the log has.
+/// Names the option for the sensor that the log has.
 fn hint(error: LogError) -> LabError {
     let other_sensor = error.other_sensor().map(|sensor| match sensor {
         Sensor::Laser => "laser",
@@ -162,8 +164,8 @@ pub(crate) fn grid_around(
 }
 
 impl LogOverview {
-    /// The grid of all cells that a model can learn of from where the robot was, with corners
-    /// at multiples of the resolution.
+    /// Returns the grid of all cells that a model can learn of from the robot's places, with corners at
+    /// multiples of the resolution.
     pub fn grid(&self, (resolution, reach): (f64, f64), radius: f64, path: &Path) -> Result<Grid> {
         let outermost =
             |most: f64, beam: &covmap_sonar::Beam| most.max(beam.pose.translation.vector.norm());
@@ -199,17 +201,17 @@ pub struct Mapper {
     pub map: CoverageMap,
     /// The log-odds occupancy grid of the same scans.
     pub occupancy: OccupancyGrid,
-    /// The path, to be drawn.
+    /// The path for a picture.
     pub trail: Trail,
     /// The length of the path \[m\].
     pub path_length: f64,
     /// The number of scans in the map.
     pub scans: usize,
-    /// Good frames that were not used.
+    /// The number of good frames that were not used.
     pub standing: usize,
-    /// Places where the poses jump.
+    /// The number of places where the poses jump.
     pub jumps: usize,
-    /// The log was not read to its end.
+    /// Whether the watch stopped the reading before the end of the log.
     pub stopped: bool,
     /// The pose of the first frame.
     pub first: Option<Isometry2<f64>>,
@@ -218,7 +220,7 @@ pub struct Mapper {
 }
 
 impl Mapper {
-    /// A map without a scan. `body` is the radius of the robot \[m\], if the cells under it are evidence.
+    /// Returns a map without a scan. `body` is the radius of the robot \[m\], if its body is evidence.
     ///
     /// # Errors
     /// If the number of bins is impossible.
@@ -252,7 +254,7 @@ impl Mapper {
         })
     }
 
-    /// Takes in a frame; `false` if its sensor is not known.
+    /// Takes over a frame; `false` if its sensor is not known.
     fn add(&mut self, frame: &LogFrame) -> bool {
         let pose = frame.scan.pose;
         self.first.get_or_insert(pose);
@@ -275,7 +277,7 @@ impl Mapper {
         true
     }
 
-    /// Follows the path, which the body has swept.
+    /// Takes over a leg of the path, which the body has swept.
     fn step(&mut self, leg: &Leg) {
         self.trail.push(leg.to, leg.jump);
         if leg.jump {

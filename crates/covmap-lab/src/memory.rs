@@ -1,6 +1,6 @@
-//! No more memory than allowed: what would take more is refused before it takes any.
+//! The limit of memory: work that would take more is refused before it begins.
 //!
-//! The limit is the process's, as the memory is.
+//! The limit holds for the whole process.
 
 use crate::error::{MemoryError, Result};
 use crate::{Config, ConfigError};
@@ -10,19 +10,19 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 const GIB: f64 = (1u64 << 30) as f64;
 
-/// How many bytes are allowed: by default as many as `--memory` says in its help.
+/// The allowed memory \[bytes\]; by default the amount in the help of `--memory`.
 static LIMIT: AtomicU64 = AtomicU64::new(4 << 30);
 
-/// Allows this many GiB from now on.
+/// Sets the allowed memory \[GiB\].
 pub fn allow(gib: f64) {
     #[allow(clippy::cast_possible_truncation, reason = "saturates")]
     LIMIT.store((gib * GIB) as u64, Ordering::Relaxed);
 }
 
-/// Checks that `at_once` runs with a configuration on a grid fit into the memory that is allowed.
+/// Checks that `at_once` runs with a configuration on a grid fit into the allowed memory.
 ///
 /// # Errors
-/// If they do not, or if the configuration is invalid.
+/// If they do not fit, or if the configuration is invalid.
 pub fn check_run(grid: &Grid, config: &Config, at_once: usize) -> Result<()> {
     let times = u64::try_from(at_once).unwrap_or(u64::MAX);
     let bytes = run_bytes(config, grid)?.saturating_mul(times);
@@ -30,13 +30,13 @@ pub fn check_run(grid: &Grid, config: &Config, at_once: usize) -> Result<()> {
     let beams = config.build()?.0.beams().len();
     let resolution = config.resolution;
     Ok(check(bytes, || match grid.len() {
-        // Of whatever world.
+        // Not of a particular world.
         1 => format!("the planner's tables for {beams} sensors in cells of {resolution} m"),
         _ => format!("{several}{} and a planner for {beams} sensors", map_of(grid, config)),
     })?)
 }
 
-/// How many runs with a configuration on a grid fit at the same time; at least one.
+/// Returns the number of runs with a configuration on a grid that fit at the same time; at least one.
 ///
 /// # Errors
 /// If the configuration is invalid.
@@ -45,12 +45,12 @@ pub fn runs_at_once(grid: &Grid, config: &Config) -> Result<usize> {
     Ok(usize::try_from(fit).unwrap_or(usize::MAX).max(1))
 }
 
-/// Checks that the map of a configuration on a grid fits.
+/// Checks that the map of a configuration on a grid fits into the allowed memory.
 ///
 /// # Errors
-/// If it does not.
+/// If the map does not fit.
 pub fn check_map(grid: &Grid, config: &Config) -> Result<(), MemoryError> {
-    // Beside it the occupancy map, what is written, and what is drawn.
+    // Besides the map: the occupancy map, the output and the pictures.
     const BESIDE: u64 = 60;
     let cells = u64::try_from(grid.len()).unwrap_or(u64::MAX);
     let bytes = CoverageMap::bytes(grid, config.model.bins).saturating_mul(2);
@@ -67,17 +67,17 @@ fn check(bytes: u64, what: impl Fn() -> String) -> Result<(), MemoryError> {
     if bytes <= limit { Ok(()) } else { Err(MemoryError { what: what(), bytes, limit }) }
 }
 
-/// About how many bytes a run with a configuration on a grid takes at most, the truth and the
-/// scores of its map among them: an estimate, mostly too large.
+/// Estimates the peak memory of a run with a configuration on a grid, including the truth and the scores
+/// of its map \[bytes\]. The estimate is mostly too large.
 ///
 /// # Errors
-/// If the configuration is invalid, but for its planner.
+/// If a section of the configuration other than the planner's is invalid.
 pub fn run_bytes(config: &Config, grid: &Grid) -> Result<u64, ConfigError> {
-    // Coverage, clearances, what is in sight of each of the parts that look, and the certificate.
+    // Coverage, clearances, the cells in sight for each of the parallel parts, and the certificate.
     const SCORES: usize = 8 + 8 + 2 * 18 + 16;
     let (_, model) = config.build()?;
     let scores = u64::try_from(grid.len().saturating_mul(SCORES)).unwrap_or(u64::MAX);
-    // The belief once more, as it is written.
+    // The belief once more, for its output.
     let maps = CoverageMap::bytes(grid, config.model.bins).saturating_mul(2);
     Ok(planner_bytes(&config.planner, &model, grid).saturating_add(maps).saturating_add(scores))
 }

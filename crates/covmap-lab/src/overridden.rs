@@ -1,34 +1,34 @@
-//! Parameters that are set by their paths.
+//! Setting parameters by their paths.
 
 use crate::Config;
 use serde_json::Value;
 
-/// Why a parameter cannot be set.
+/// Error in the path or the value of a parameter.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum OverrideError {
-    /// The path leads nowhere.
+    /// The path leads to no parameter.
     #[error("{0:?} is no parameter of a configuration")]
     NoParameter(String),
     /// The value is of another kind.
     #[error("{path:?}: {message}")]
     Value {
-        /// The parameter.
+        /// Path of the parameter.
         path: String,
-        /// What is wrong.
+        /// The fault of the value.
         message: String,
     },
 }
 
 impl Config {
-    /// The configuration with another value of one parameter, such as
+    /// Returns the configuration with another value of one parameter, such as
     /// `"model.update.Cause.no_echo.range"`.
     ///
     /// A variant without fields is a string, `"Off"`; one with fields is a map from its name,
     /// `{"Banded": {"first": 1.0, "closest": 0.5}}`.
     ///
     /// # Errors
-    /// If there is no such parameter, or the value is of another kind. Whether it is in its
-    /// interval says [`Config::build`].
+    /// If there is no such parameter, or the value is of another kind. [`Config::build`] checks whether
+    /// the value is in its interval.
     pub fn overridden(&self, path: &str, value: &Value) -> Result<Self, OverrideError> {
         let fail = |error: serde_json::Error| OverrideError::Value {
             path: path.to_owned(),
@@ -36,7 +36,7 @@ impl Config {
         };
         let none = || OverrideError::NoParameter(path.to_owned());
         if path.contains(['/', '~']) {
-            // In a pointer these have a meaning of their own.
+            // In a JSON pointer these characters have a meaning of their own.
             return Err(none());
         }
         let mut tree = serde_json::to_value(self).map_err(fail)?;

@@ -1,4 +1,4 @@
-//! How a map is read.
+//! The reader of a map: as it is, or through a read-out.
 
 use crate::error::{Result, about};
 use covmap::{CoverageMap, ReadOut, ReadOutError};
@@ -6,16 +6,16 @@ use covmap_io::read_ron;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-/// How a map is read: as it is, or through the read-out in a file.
+/// Reader of a map: as it is, or through the read-out in a file.
 #[derive(Debug, Clone, Default)]
 pub struct Reader {
     read_out: Option<ReadOut>,
-    /// The file, as it was typed.
+    /// The file of the read-out, as the user typed it.
     pub file: Option<PathBuf>,
 }
 
 impl Reader {
-    /// Reads and checks a file, for maps with a number of bins; without one a map is read as it is.
+    /// Reads and checks a file, for maps with a number of bins; without a file, maps are read as they are.
     ///
     /// # Errors
     /// If the file cannot be read, or is for maps with another number of bins.
@@ -28,7 +28,7 @@ impl Reader {
         Ok(Self { read_out: Some(read_out), file: Some(file.to_owned()) })
     }
 
-    /// The map as it is read.
+    /// Returns the map as it is read.
     ///
     /// # Errors
     /// If the read-out is for maps with another number of bins.
@@ -39,7 +39,7 @@ impl Reader {
         })
     }
 
-    /// The file in the words of a picture or of a report; nothing without one.
+    /// Returns the file in words for a picture or a report; empty without a file.
     pub fn in_words(&self) -> String {
         self.file.as_ref().map_or_else(String::new, |file| {
             let name = file.file_name().unwrap_or_default().to_string_lossy();

@@ -1,4 +1,4 @@
-//! What a robot recorded: laser scans for a survey, and examples for a fit.
+//! The record of a robot: laser scans for a survey, and examples for a fit.
 
 use crate::Config;
 use crate::error::{Fault, Result, about};
@@ -18,22 +18,22 @@ use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A coverage of at least this hides what is behind.
+/// Least coverage with which a cell hides the cells behind it.
 const OPAQUE: f64 = 0.5;
 
-/// The log of a robot, and a survey of where it was.
+/// The log of a robot, and a survey of the building.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Recorded {
     /// The log, with sonar and laser.
     pub log: PathBuf,
-    /// The file of its true poses; empty for those of the log.
+    /// The file of the robot's true poses; empty for those of the log.
     pub poses: PathBuf,
     /// The survey.
     pub truth: PathBuf,
-    /// A frame is used if the robot moved so far since the last one \[m\] …
+    /// Distance since the last used frame from which on a frame is used \[m\].
     pub every: f64,
-    /// … or turned by so much \[rad\].
+    /// Turn since the last used frame from which on a frame is used \[rad\].
     pub every_angle: f64,
 }
 
@@ -42,33 +42,33 @@ pub struct Recorded {
 pub struct Frames {
     /// The scans, each with the ring that made it.
     pub scans: Vec<(Arc<SonarRing>, Scan)>,
-    /// The line of each.
+    /// The line of each scan.
     pub lines: Vec<usize>,
-    /// What there is to know of the log.
+    /// The account of the log.
     pub account: Account,
 }
 
-/// The most readings that are held at the same time, in some 300 MB.
+/// Largest number of readings that are held at the same time, in some 300 MB.
 const MOST_READINGS: usize = 16_000_000;
-/// A scan is as large as this number of readings, without its own.
+/// The size of a scan without its readings, in readings.
 const SCAN_SIZE: usize = 8;
 
-/// How much of a log is held.
+/// The size of the held part of a log, in readings.
 #[derive(Debug, Default)]
 struct Held(usize);
 
 impl Held {
-    /// Adds a scan; `false` if that is too much.
+    /// Adds a scan; `false` if that is more than may be held.
     fn add(&mut self, scan: &Scan) -> bool {
         self.0 += scan.ranges.len() + SCAN_SIZE;
         self.0 <= MOST_READINGS
     }
 }
 
-/// Reads all scans of a log; `ring` stands in for what the log does not say.
+/// Reads all scans of a log; `ring` stands in for facts about the sonars that the log does not state.
 ///
 /// # Errors
-/// If the log cannot be read, or has more readings than are held.
+/// If the log cannot be read, or has more readings than may be held.
 pub fn frames(log: &Path, poses: Option<&Path>, sensor: Sensor, ring: SonarRing) -> Result<Frames> {
     let options = LogOptions { sensor, ring, poses: poses.map(Path::to_path_buf) };
     let mut reader = LogReader::open(log, &options)?;
@@ -85,7 +85,7 @@ pub fn frames(log: &Path, poses: Option<&Path>, sensor: Sensor, ring: SonarRing)
 }
 
 impl Recorded {
-    /// Finds what is wrong with it before any work is done.
+    /// Checks the example before any work is done.
     pub fn check(&self, path: &Path) -> Result<()> {
         if !(self.every >= 0.0 && self.every_angle >= 0.0) {
             return Err(about(path)(Fault::Number {
@@ -98,9 +98,10 @@ impl Recorded {
         Ok(covmap_io::find(&log)?)
     }
 
-    /// The sonar's scans, and the surveyed coverage of the cells that count: seen by the laser;
-    /// in sight of the robot within the usable range, or the first solid behind them; not
-    /// under its body, which is evidence where the scans were made.
+    /// Returns the sonar's scans, and the surveyed coverage of the cells that count.
+    ///
+    /// A cell counts if the laser saw it, and it is in sight of the robot within the usable range or a first
+    /// solid cell behind, and not under the robot's body, which is evidence at the places of the scans.
     pub fn example(&self, path: &Path, config: &Config) -> Result<Example> {
         let (log, truth) = (beside(path, &self.log), beside(path, &self.truth));
         let poses = (!self.poses.as_os_str().is_empty()).then(|| beside(path, &self.poses));
@@ -132,7 +133,7 @@ impl Recorded {
         Ok(Example { name, ring, scans, body, grid, truth })
     }
 
-    /// Standing still is no evidence.
+    /// The scans that are used: scans of a robot that stands still are no new evidence.
     fn used(&self, frames: Vec<(Arc<SonarRing>, Scan)>) -> Vec<Scan> {
         let stride = Stride { every: self.every, turn: self.every_angle };
         let mut used: Vec<Scan> = Vec::new();
@@ -145,7 +146,7 @@ impl Recorded {
     }
 }
 
-/// Which cells count.
+/// Marks the cells that count.
 fn counted(
     config: &Config,
     coverage: &Raster<f64>,

@@ -1,4 +1,4 @@
-//! A run is repeated from its trace, up to one decision.
+//! Replay of a run from its trace, up to one decision.
 
 use crate::TraceHeader;
 use crate::error::{Fault, LabError, Result, about};
@@ -12,30 +12,29 @@ use nalgebra::Point2;
 use std::ops::ControlFlow;
 use std::path::Path;
 
-/// All that was known when a decision was taken.
+/// The state of a run when a decision was taken.
 #[derive(Debug)]
 pub struct Moment {
     /// The mission of the run.
     pub mission: Mission,
     /// The belief.
     pub map: CoverageMap,
-    /// Where the robot had driven \[m\].
+    /// Corners of the path driven so far \[m\].
     pub trajectory: Vec<Point2<f64>>,
-    /// The number of scans before.
+    /// The number of scans before the decision.
     pub scans: usize,
-    /// Where the robot was.
+    /// The robot's cell.
     pub from: Cell,
-    /// What was decided.
+    /// The decision.
     pub decision: Decision,
     /// All candidates, with their gains.
     pub candidates: Vec<CandidateRecord>,
 }
 
-/// Repeats a run up to the last event of its trace, which must be a decision. Every event on
-/// the way must be the recorded one.
+/// Repeats a run up to the last event of its trace, which must be a decision.
 ///
 /// # Errors
-/// If one is not, or if the header of the trace is impossible.
+/// If an event differs from the recorded one, or if the header of the trace is invalid.
 pub fn replay(trace: &Trace, path: &Path) -> Result<Moment> {
     let header = &trace.header;
     check(header).map_err(in_file(path))?;
@@ -80,11 +79,11 @@ fn look(mission: &Mission, from: Cell, decision: &Decision, view: &View<'_>) -> 
     }
 }
 
-/// Checks a header that anybody may have written.
+/// Checks a header, which may come from any program.
 fn check(header: &TraceHeader) -> Result<()> {
     let TraceHeader { config, grid, .. } = header;
     check_config(config).map_err(in_part("config"))?;
-    // The planner is looked at as it was, and goes on.
+    // For two planners: the candidates come from a clone.
     memory::check_run(grid, config, 2)
 }
 
@@ -99,7 +98,7 @@ fn check_scans(events: &[Event], beams: usize) -> Result<()> {
     Ok(())
 }
 
-/// Says of which part of a header a fault is.
+/// Names the part of a header in an error without a file.
 fn in_part(part: &'static str) -> impl Fn(LabError) -> LabError {
     move |error| match error {
         LabError::Fault(fault) => Fault::Part { part, fault: Box::new(fault) }.into(),

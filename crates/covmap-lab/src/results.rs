@@ -1,4 +1,4 @@
-//! What a run leaves behind.
+//! The results of a run: files and pictures.
 
 pub mod certificate;
 mod partial;
@@ -24,38 +24,38 @@ use covmap_world::World;
 use serde::Serialize;
 use std::path::PathBuf;
 
-/// An exploration: a world, the experiment in it, and how its map is read and written.
+/// An exploration: a world, the experiment in it, and the parameters for reading and writing its map.
 #[derive(Debug)]
 pub struct Task {
     /// The world.
     pub world: World,
     /// The mission in it, and the seed.
     pub experiment: Experiment,
-    /// When a cell of the map for other software is free or occupied.
+    /// Thresholds of free and occupied cells in the map for other software.
     pub thresholds: MapThresholds,
-    /// How the map is read.
+    /// Reader of the map.
     pub reader: Reader,
 }
 
-/// What `summary.json` holds of an exploration.
+/// The content of `summary.json` for an exploration.
 #[derive(Debug, Serialize)]
 pub struct Written {
     /// The numbers of the run.
     #[serde(flatten)]
     pub summary: Summary,
-    /// How well the map explains the cells that were measured, class by class; of solid cells the
-    /// first layer.
+    /// Score of the map over the measured cells, class by class; of the solid cells, only the first
+    /// layer counts.
     pub measured: ExampleScore,
-    /// The read-out through which all scores are, if there was one.
+    /// File of the read-out for all scores, if there was one.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub read_out: Option<PathBuf>,
 }
 
-/// Writes a map: the whole posterior as it is, and what is safe to know of it, as it is `read`, for
-/// map_server.
+/// Writes a map: the whole posterior of `map` as it is, and for map_server the certain cells of `read`, the
+/// map as it is read.
 ///
 /// # Errors
-/// If it cannot be written.
+/// If a file cannot be written.
 pub fn write_map(
     folder: &OutputFolder,
     (map, read): (&CoverageMap, &CoverageMap),
@@ -67,16 +67,16 @@ pub fn write_map(
     Ok(save_map_server(folder.partial(), "map", read, thresholds, may_be_free)?)
 }
 
-/// A line of the report: what other software is told.
+/// Returns a line of the report on the map for other software.
 pub fn map_line(counts: &MapCounts) -> String {
     let MapCounts { free, occupied, unknown } = counts;
     format!("map.pgm: {free} free, {occupied} occupied, {unknown} unknown")
 }
 
-/// Writes everything but the trace, and returns the numbers, also those of the map.
+/// Writes all results except the trace; returns the numbers of the run and of the map.
 ///
 /// # Errors
-/// If something cannot be written.
+/// If a file cannot be written.
 pub fn write(
     folder: &OutputFolder,
     task: &Task,
@@ -109,12 +109,12 @@ pub fn write(
         .save(folder.path("reliability.svg"), folder.path("reliability.png"))?;
     let measured = ExampleScore::of(measured.iter().map(|(p, truth)| (p, *truth)));
     let written = Written { summary, measured, read_out: reader.file.clone() };
-    // Last: whoever finds it finds all the others.
+    // Last: if this file is there, all others are.
     write_json(folder.path("summary.json"), &written)?;
     Ok((written, counts))
 }
 
-/// What a map says of the cells that were measured, and their truths.
+/// The posteriors of the measured cells, and their true coverages.
 fn measured(map: &CoverageMap, truth: &Truth) -> Vec<(Vec<f64>, f64)> {
     let coverage = |cell| truth.coverage.get(cell).copied().unwrap_or(1.0);
     let cells = truth.measured_cells(map).into_iter();

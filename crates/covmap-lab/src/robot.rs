@@ -20,7 +20,7 @@ pub struct SimulatedRobot<'a> {
 }
 
 impl<'a> SimulatedRobot<'a> {
-    /// A robot whose noise is a function of the seed and the number of the scan.
+    /// Returns a robot whose noise is a function of the seed and the number of the scan.
     ///
     /// # Errors
     /// If the configuration is invalid.
@@ -31,7 +31,7 @@ impl<'a> SimulatedRobot<'a> {
 }
 
 impl SimulatedRobot<'_> {
-    /// What the ring measures at a pose.
+    /// Measures with the ring at a pose.
     pub fn fire(&mut self, pose: &Isometry2<f64>) -> Vec<Range> {
         let mut noise = stream(self.seed, "fire", self.scans);
         self.scans += 1;

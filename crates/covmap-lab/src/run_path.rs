@@ -1,4 +1,4 @@
-//! Where the robot of a run drove between its scans, from the run's trace.
+//! The robot's path between the scans of a run, from the run's trace.
 
 use crate::TraceHeader;
 use covmap::{Cell, Grid};
@@ -6,27 +6,27 @@ use covmap_explore::{Event, standing_place};
 use nalgebra::{Isometry2, Point2};
 use std::collections::VecDeque;
 
-/// Lengths that differ by less are the same \[m\].
+/// Lengths that differ by less than this are the same \[m\].
 const SAME: f64 = 1e-6;
 
-/// Follows the events of a run.
+/// The path of a run, followed event by event.
 #[derive(Debug)]
 pub struct RunPath {
     grid: Grid,
-    /// Metres in a second.
+    /// Speed \[m/s\].
     speed: f64,
-    /// In the run the robot keeps its heading.
+    /// Start pose, with the heading that the robot keeps in the run.
     start: Isometry2<f64>,
     at: Point2<f64>,
-    /// How far it drove \[m\].
+    /// Length of the driven path \[m\].
     length: f64,
-    /// The cells to which it drives.
+    /// The cells that the robot is driving to.
     ahead: VecDeque<Cell>,
-    /// It went to the centre of the cell that it started in, or found that it cannot.
+    /// Whether the robot went to the centre of the cell that it started in, or found that it cannot.
     settled: bool,
-    /// It cannot: the start stands for that centre.
+    /// Whether the robot cannot get there: the start replaces that centre.
     cramped: bool,
-    /// Where it passed since the last scan, and how far it had driven.
+    /// Corners of the path since the last scan, each with the length of the path up to it.
     passed: Vec<(f64, Point2<f64>)>,
 }
 
@@ -46,8 +46,8 @@ impl RunPath {
         }
     }
 
-    /// Takes in the next event; gives where the robot passed since the last scan, if it is one:
-    /// time \[s\] and pose of each corner.
+    /// Takes over the next event. For a scan, returns the time \[s\] and pose of each corner that the robot
+    /// passed since the last scan.
     pub fn follow(&mut self, event: &Event) -> Vec<(f64, Isometry2<f64>)> {
         match event {
             Event::Decision { from, decision, .. } => {
@@ -77,7 +77,7 @@ impl RunPath {
                     self.drive(center);
                 }
                 (self.at, self.length) = (scan.pose.translation.vector.into(), driven);
-                // What is not before the scan is where it was taken.
+                // A corner that is not before the scan is the place of the scan.
                 let before = |(length, _): &(f64, Point2<f64>)| *length < driven - SAME;
                 let passed = std::mem::take(&mut self.passed);
                 passed.into_iter().filter(before).map(|passed| self.timed(passed)).collect()
@@ -86,7 +86,7 @@ impl RunPath {
         }
     }
 
-    /// Where the robot passed after its last scan.
+    /// Returns the times and poses of the corners that the robot passed after its last scan.
     pub fn rest(&mut self) -> Vec<(f64, Isometry2<f64>)> {
         let passed = std::mem::take(&mut self.passed);
         passed.into_iter().map(|passed| self.timed(passed)).collect()

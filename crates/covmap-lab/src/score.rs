@@ -1,4 +1,4 @@
-//! A map against the truth.
+//! Scores of a map against the truth.
 
 use covmap::{Cell, CoverageMap, Raster, Steps, is_scored};
 use covmap_explore::{Mission, Run};
@@ -7,39 +7,39 @@ use covmap_world::World;
 use nalgebra::Point2;
 use serde::{Deserialize, Serialize};
 
-/// A cell of which at least this much is covered is solid.
+/// Least coverage of a solid cell.
 const SOLID: f64 = 0.5;
-/// A cell of which at most this much is covered is free.
+/// Largest coverage of a free cell.
 const FREE: f64 = 0.2;
 
-/// What there truly is, and what of it the robot could have known.
+/// The truth about a world, and the cells that the robot could have known.
 #[derive(Debug, Clone)]
 pub struct Truth {
     /// The exact coverage of every cell.
     pub coverage: Raster<f64>,
     /// The cells whose centres the robot can truly reach.
     pub reachable: Raster<bool>,
-    /// The first solid cells that can be seen from there within the usable range.
+    /// The first solid cells in sight of the reachable cells within the usable range.
     pub first_solid: Raster<bool>,
-    /// Those of them with a smooth surface in sight, which mirrors sound.
+    /// The first solid cells with a smooth surface in sight, which mirrors sound.
     pub first_smooth: Raster<bool>,
     /// The steps that the robot can truly take.
     pub steps: Steps,
-    /// The cells that can be seen from there within the usable range, and the first solid
-    /// ones: the same for every strategy.
+    /// The cells in sight of the reachable cells within the usable range, and the first solid cells: the
+    /// same for every strategy.
     pub observable: Raster<bool>,
 }
 
-/// How good a map is.
+/// Score of a map.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Score {
     /// The share of the truly reachable cells that are known to be free.
     pub completeness: f64,
     /// The share of the first solid cells that are known with a mode of at least ½.
     pub wall_recall: f64,
-    /// The same, of those with only rough surfaces in sight; `None` if there are none.
+    /// The same share of the first solid cells with only rough surfaces in sight; `None` if there are none.
     pub wall_recall_rough: Option<f64>,
-    /// The same, of those with a smooth surface in sight; `None` if there are none.
+    /// The same share of the first solid cells with a smooth surface in sight; `None` if there are none.
     pub wall_recall_smooth: Option<f64>,
     /// The share of the truly reachable cells with a mode of at least ½.
     pub phantom: f64,
@@ -54,7 +54,7 @@ pub struct Score {
 }
 
 impl Truth {
-    /// The truth about a world for a mission.
+    /// Computes the truth about a world for a mission.
     pub fn new(world: &World, mission: &Mission) -> Self {
         let Mission { config, grid, start, .. } = mission;
         let coverage = world.coverage(grid);
@@ -69,8 +69,8 @@ impl Truth {
         Self { coverage, reachable, first_solid, first_smooth, steps, observable }
     }
 
-    /// The cells whose error counts: within the usable range and in sight of a pose of the
-    /// trajectory, plus one solid layer; not those that the robot's body pinned.
+    /// Returns the scored cells of a run: those within the usable range and in sight of the pose of a scan,
+    /// plus one solid layer, without those that the robot's body pinned.
     pub fn scored_cells(&self, world: &World, mission: &Mission, run: &Run) -> Vec<Cell> {
         let grid = mission.grid;
         let places = run.scans.iter().map(|scan| scan.pose.translation.vector.into());
@@ -81,9 +81,8 @@ impl Truth {
         cells.filter(|cell| !run.map.is_pinned(*cell)).collect()
     }
 
-    /// The cells in which a map has something to prove: those that were measured, and not
-    /// pinned by the body, without the solid ones that are deeper than the first layer
-    /// ([`is_scored`]).
+    /// Returns the measured cells: those that the map knows and the body did not pin, without the solid
+    /// cells deeper than the first layer ([`is_scored`]).
     pub fn measured_cells(&self, map: &CoverageMap) -> Vec<Cell> {
         let counts = |cell: &Cell| {
             map.is_known(*cell) && !map.is_pinned(*cell) && is_scored(&self.coverage, *cell)
@@ -91,12 +90,12 @@ impl Truth {
         map.grid().cells().filter(counts).collect()
     }
 
-    /// Whether a map knows a cell to be free: with a mode of at most .2.
+    /// Whether a map knows a cell to be free, with a mode of at most .2.
     pub fn is_known_free(map: &CoverageMap, cell: Cell) -> bool {
         map.is_known(cell) && map.mode(cell) <= FREE + 1e-9
     }
 
-    /// Scores a map over the cells that count.
+    /// Scores a map; `scored` are the scored cells.
     pub fn score(&self, map: &CoverageMap, scored: &[Cell]) -> Score {
         let those = |among: &Raster<bool>| -> Vec<Cell> {
             among.iter().filter(|(_, a)| **a).map(|(cell, _)| cell).collect()
@@ -113,7 +112,7 @@ impl Truth {
             let value = |cell: &Cell| f(*cell, self.coverage.get(*cell).copied().unwrap_or(1.0));
             mean(scored.iter().map(value))
         };
-        // What is not known scores as uniform.
+        // An unknown cell scores as uniform.
         let mode = |cell| if map.is_known(cell) { map.mode(cell) } else { 0.5 };
         Score {
             completeness: share(&reachable, &|c| Self::is_known_free(map, c)),

@@ -1,4 +1,4 @@
-//! Setting up a mission in a simulated world.
+//! The setup of a mission in a simulated world.
 
 use crate::{Config, ConfigError};
 use covmap::{Raster, short};
@@ -6,7 +6,7 @@ use covmap_explore::{Limits, Mission, MissionError, ParameterError};
 use covmap_world::World;
 use nalgebra::{Isometry2, Point2};
 
-/// Why a mission in a simulated world cannot be begun.
+/// Error in the setup of a mission in a simulated world.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SetupError {
     /// The configuration is invalid.
@@ -15,45 +15,47 @@ pub enum SetupError {
     /// The mission is impossible in any world.
     #[error(transparent)]
     Mission(#[from] MissionError),
-    /// Something is where the robot should start.
+    /// An obstacle is too near to the start.
     #[error(
         "the robot of radius {radius} m cannot stand at the start ({}, {}): the next obstacle is {clearance:.3} m from there",
         short(x),
         short(y)
     )]
     StartOccupied {
-        /// Start.
+        /// x of the start \[m\].
         x: f64,
-        /// Start.
+        /// y of the start \[m\].
         y: f64,
-        /// The robot's radius \[m\].
+        /// Radius of the robot \[m\].
         radius: f64,
-        /// The distance to the nearest solid \[m\].
+        /// Distance to the nearest obstacle \[m\].
         clearance: f64,
     },
-    /// No cell of the world is free.
+    /// The robot fits into no cell of the world.
     #[error("a robot of radius {0} m fits nowhere in this world")]
     NoStart(f64),
-    /// What is inside is no list of runs of cells.
+    /// `inside` is not a list of runs of cells.
     #[error(
         "inside[{number}]: ({first}, {next}) is no run of cells after {end} in a grid of {cells}"
     )]
     Inside {
-        /// Which run.
+        /// Number of the run.
         number: usize,
-        /// Its first cell.
+        /// First cell of the run.
         first: usize,
-        /// The first cell past it.
+        /// First cell past the run.
         next: usize,
-        /// The first cell past the one before.
+        /// First cell past the run before.
         end: usize,
-        /// How many cells the grid has.
+        /// The number of cells of the grid.
         cells: usize,
     },
 }
 
-/// The mission to explore a world; from the world's own start, or, if it gives none,
-/// from its roomiest place, if `start` is `None`.
+/// Returns the mission to explore a world.
+///
+/// If `start` is `None`, the robot starts where the world says, or in the roomiest place of a world
+/// without a start.
 ///
 /// # Errors
 /// If the configuration is invalid or the robot cannot stand at the start.
@@ -88,7 +90,7 @@ pub fn mission(
     Ok(Mission { config: config.parameters(), grid, outside, start, limits })
 }
 
-/// The rectangle that is to be explored.
+/// The rectangle to explore.
 struct Extent {
     low: Point2<f64>,
     high: Point2<f64>,

@@ -5,12 +5,12 @@ use covmap_explore::{Ending, Parameters, Run};
 use covmap_plan::CellStatus;
 use serde::{Deserialize, Serialize};
 
-/// How many cells the certificate puts where.
+/// The number of cells with each status of a certificate.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CellCounts {
     /// Known with an entropy of at most ε.
     pub resolved: usize,
-    /// Their entropy did not fall any longer.
+    /// Given up: the entropy did not fall any longer.
     pub exhausted: usize,
     /// In sight of a reachable view-point.
     pub open: usize,
@@ -37,51 +37,50 @@ impl CellCounts {
     }
 }
 
-/// What `summary.json` holds.
+/// The content of `summary.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// The world's name.
+    /// Name of the world.
     pub world: String,
-    /// The strategy as in Fig. 7.
+    /// Spelling of the strategy, such as `IG_CL:0.3`.
     pub strategy: String,
-    /// How a reading changed the belief: the name of the update.
+    /// Name of the update, by which readings changed the belief.
     pub update: String,
-    /// The seed of the noise.
+    /// Seed of the noise.
     pub seed: u64,
     /// r \[m\].
     pub resolution: f64,
-    /// How it ended.
+    /// The ending.
     pub ending: Ending,
-    /// Number of scans, of all beams each.
+    /// The number of scans, of all beams each.
     pub scans: usize,
-    /// Number of decisions.
+    /// The number of decisions.
     pub decisions: usize,
-    /// Number of bumps.
+    /// The number of bumps.
     pub bumps: usize,
     /// Length of the driven path \[m\].
     pub path_length_m: f64,
-    /// How far it turned on the way: the angles between one piece of the path and the next, summed up
-    /// \[rad\].
+    /// Sum of the turns \[rad\]: the angles between each piece of the path and the next.
     pub turns_rad: f64,
     /// The certificate in numbers.
     pub cells: CellCounts,
-    /// How good the map is.
+    /// Score of the map.
     #[serde(flatten)]
     pub score: Score,
-    /// What was left unseen of what the robot could truly reach.
+    /// Truly reachable cells that the robot never knew to be free.
     pub cut_off: CutOff,
-    /// Candidates with E\[I\] < 0, over all decisions.
+    /// The number of candidates with E\[I\] < 0, over all decisions.
     pub negative_gains: usize,
-    /// Cells given up by the cap on counted scans.
+    /// The number of cells given up by the cap on counted scans.
     pub capped_cells: usize,
-    /// Time of the run \[s\], by whoever has a clock.
+    /// Time of the run \[s\], by the caller's clock.
     pub seconds: f64,
-    /// A hash over the trace and the belief; the same for the same run.
+    /// Hash over the trace and the belief; equal runs have equal hashes.
     pub trace_hash: String,
 }
 
 impl Summary {
-    /// The numbers of a run.
+    /// Returns the numbers of a run.
     pub fn new(
         world: &str,
         (parameters, seed): (&Parameters, u64),

@@ -1,4 +1,4 @@
-//! The first line of a trace.
+//! The header of a trace.
 
 use crate::{Config, SetupError};
 use covmap::{Grid, Raster};
@@ -7,12 +7,12 @@ use covmap_world::SonarPhysics;
 use nalgebra::Isometry2;
 use serde::{Deserialize, Serialize};
 
-/// The version of the trace's format.
+/// Version of the trace's format.
 pub const TRACE_VERSION: u32 = 5;
-/// The oldest version that is read: its strategies are spelled `{"IgCl":{"alpha":0.3}}`.
+/// Oldest version that can be read; it spells strategies `{"IgCl":{"alpha":0.3}}`.
 pub const OLDEST_TRACE: u32 = 4;
 
-/// The first line of a trace: all that is needed to repeat the run.
+/// Header of a trace, its first line: everything needed to repeat the run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct TraceHeader {
@@ -22,21 +22,21 @@ pub struct TraceHeader {
     pub world: String,
     /// The seed of the noise.
     pub seed: u64,
-    /// All parameters, the strategy among them.
+    /// All parameters, including the strategy.
     pub config: Config,
     /// The map's grid.
     pub grid: Grid,
-    /// The row-major indices of the first cell and past the last of every run of cells in
-    /// the extent: the others are outside.
+    /// Row-major indices of the first cell and past the last cell of every run of cells in the extent; all
+    /// other cells are outside.
     pub inside: Vec<(usize, usize)>,
-    /// Where the robot started, `world_from_robot`.
+    /// Start pose, `world_from_robot`.
     pub start: Isometry2<f64>,
-    /// How it measured, and its budget.
+    /// Limits of the run.
     pub limits: Limits,
 }
 
 impl TraceHeader {
-    /// The header of a mission in the world called `world`, with the physics of its sensors.
+    /// Returns the header of a mission in the world called `world`, with the physics of its sensors.
     pub fn new(mission: &Mission, sonar: &SonarPhysics, world: &str, seed: u64) -> Self {
         let outside = mission.outside.values();
         let mut inside: Vec<(usize, usize)> = Vec::new();
@@ -58,11 +58,10 @@ impl TraceHeader {
         }
     }
 
-    /// The mission that the header describes. Anybody may have written it.
+    /// Returns the mission that the header describes, checked, as the header may come from any program.
     ///
     /// # Errors
-    /// If [`Mission::validate`] finds something, or what is inside is no list of runs of cells in
-    /// order.
+    /// If [`Mission::validate`] fails, or `inside` is not a list of runs of cells in order.
     pub fn mission(&self) -> Result<Mission, SetupError> {
         let mut outside = Raster::filled(self.grid, true);
         let (mut end, cells) = (0, self.grid.len());

@@ -10,12 +10,12 @@ use std::fs::File;
 use std::io::BufWriter;
 use std::path::{Path, PathBuf};
 
-/// The trace in a folder that `explore` wrote.
+/// Returns the path of the trace in a folder that `explore` wrote.
 ///
 /// # Errors
-/// If there is none; what the folder holds instead is said.
+/// If there is no trace; the error says what the folder holds instead.
 pub fn in_folder(dir: &Path) -> Result<PathBuf> {
-    /// What only the summary of a map says.
+    /// The field that only the summary of a map has.
     #[derive(Deserialize)]
     struct Summary {
         sensor: Option<String>,
@@ -40,7 +40,7 @@ pub fn in_folder(dir: &Path) -> Result<PathBuf> {
     })))
 }
 
-/// Writes a trace line by line, and hashes it.
+/// Writer of a trace, line by line, with a hash.
 #[derive(Debug)]
 pub struct TraceWriter {
     lines: JsonLines<BufWriter<File>>,
@@ -51,7 +51,7 @@ impl TraceWriter {
     /// Begins a trace in a file.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If the file cannot be written.
     pub fn create(path: &Path) -> Result<Self, FileError> {
         Ok(Self { lines: JsonLines::create(path)?, hasher: TraceHasher::default() })
     }
@@ -59,14 +59,14 @@ impl TraceWriter {
     /// Writes the header, the first line.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If the file cannot be written.
     pub fn header(&mut self, header: &TraceHeader) -> Result<(), FileError> {
         self.hasher.add(header);
         self.lines.write(header)?;
         self.lines.flush()
     }
 
-    /// Writes an event; a decision is in the file when this returns.
+    /// Writes an event; when this returns, a decision or the end is in the file.
     pub fn event(&mut self, event: &Event) -> Result<(), FileError> {
         self.hasher.add(event);
         self.lines.write(event)?;
@@ -76,7 +76,7 @@ impl TraceWriter {
         }
     }
 
-    /// The hash of all lines and of the belief that they led to.
+    /// Finishes the file; returns the hash of all lines and of the belief at their end.
     pub fn finish(mut self, belief: &CoverageMap) -> Result<String, FileError> {
         self.lines.sync()?;
         self.hasher.add_bytes(&belief.to_bytes());
@@ -87,9 +87,9 @@ impl TraceWriter {
 /// A trace up to one decision.
 #[derive(Debug)]
 pub struct Trace {
-    /// What the trace begins with.
+    /// The header.
     pub header: TraceHeader,
-    /// All events up to the decision, which is the last.
+    /// All events up to and including the decision.
     pub events: Vec<Event>,
 }
 
@@ -100,7 +100,7 @@ struct Version {
 }
 
 impl Trace {
-    /// Reads a trace up to the decision with a number. Its last line may be cut short.
+    /// Reads a trace up to the decision with a number. The last line of the file may be cut short.
     pub fn read(path: &Path, step: usize) -> Result<Self> {
         let header = read_header(path)?;
         let mut events = Vec::new();
@@ -124,7 +124,7 @@ impl Trace {
     }
 }
 
-/// The header of a trace.
+/// Reads the header of a trace.
 pub fn read_header(path: &Path) -> Result<TraceHeader> {
     let empty = || about(path)(Fault::EmptyTrace);
     let Version { covmap_trace } = read_json_lines(path)?.next().ok_or_else(empty)??;

@@ -1,26 +1,26 @@
-//! A window on long work.
+//! The watch over long work.
 
 use std::fmt::Display;
 use std::ops::ControlFlow;
 
-/// Who started long work, and wants to know how far it is, and may end it.
+/// Observer of long work, which receives its progress and may stop it.
 pub trait Watch: Sync {
-    /// Is told how far the work is; so often that most of it need not be shown.
+    /// Receives the progress of the work, more often than it need be shown.
     fn tell(&self, progress: &dyn Display);
 
-    /// Is told that the next part of the work begins.
+    /// Receives the name of the part of the work that begins.
     fn begin(&self, part: &str);
 
-    /// Whether the work is to end.
+    /// Whether the work is to stop.
     fn is_stopped(&self) -> bool;
 
-    /// The same, as a hook answers it.
+    /// Returns whether the work is to stop, as the result of a hook.
     fn flow(&self) -> ControlFlow<()> {
         if self.is_stopped() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 }
 
-/// Nobody looks: the work goes on to its end.
+/// No observer: the work goes on to its end.
 impl Watch for () {
     fn tell(&self, _: &dyn Display) {}
 

@@ -1,4 +1,4 @@
-//! What is given up is given up rightly: one more scan would not have resolved it.
+//! Exhausted cells are given up rightly: one more scan would not have resolved them.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
 use covmap::{Cell, CoverageMap};
@@ -11,8 +11,7 @@ use covmap_world::{Scenario, World};
 use nalgebra::Isometry2;
 use std::ops::ControlFlow;
 
-/// What the robot believed at the end of a run, made anew from what it heard and touched: with that it
-/// can look again.
+/// The belief at the end of a run, made anew from the scans and the events of the body, for further scans.
 struct Believer {
     model: SensorModel,
     map: CoverageMap,
@@ -50,8 +49,8 @@ impl Believer {
     }
 }
 
-/// Explores a shipped building, and really makes the scan that promises most about each of up to `most`
-/// exhausted cells. Returns how many cells that were, and how many of them it resolved.
+/// Explores a shipped building, and takes the scan that promises most about each of up to `most`
+/// exhausted cells. Returns the number of these cells, and the number of them that were resolved.
 fn looked_again(building: &str, resolution: f64, seed: u64, most: usize) -> (usize, usize) {
     let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
     let text = std::fs::read_to_string(format!("{root}/scenarios/{building}.ron")).unwrap();

@@ -1,4 +1,4 @@
-//! The robot is never shut in by its own rules; and where it is shut in, the run says so.
+//! The robot is never shut in by its own rules; if it is shut in otherwise, the run says so.
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
 use covmap_explore::{Ending, Limits, Mission, Robot, Run, Sensed, explore};
@@ -50,7 +50,7 @@ fn run(
     run_with(world, &mission, &mut robot)
 }
 
-/// Four thin posts around a place: straight steps of .2 m end at them, diagonal ones lead out.
+/// Four thin posts around a place: straight steps of .2 m end at them, diagonal steps lead out.
 fn posts_around(x: f64, y: f64) -> Vec<Shape> {
     let post = |(dx, dy)| Shape::Circle { center: (x + dx, y + dy), radius: 0.02 };
     [(0.44, 0.0), (-0.44, 0.0), (0.0, 0.44), (0.0, -0.44)].into_iter().map(post).collect()
@@ -70,7 +70,7 @@ fn a_robot_between_posts_leaves_by_a_diagonal_and_gets_back() {
     }
 }
 
-/// Two rooms, and a door of .8 m in a wall that is turned by some degrees.
+/// Two rooms, and a door of .8 m in a wall turned by some degrees.
 fn slanted_door(degrees: f64) -> World {
     let (sin, cos) = libm::sincos(degrees.to_radians());
     let along = |from: f64, to: f64| Shape::Wall {
@@ -91,7 +91,7 @@ fn a_door_that_is_wide_enough_is_a_door_at_any_angle() {
         let start = if degrees == 135.0 { at(1.5, 1.5) } else { start };
         let mission =
             covmap_lab::mission(&world, &config(strategy), start, Limits::default()).unwrap();
-        // Truly, it gets to both sides.
+        // The robot can truly get to both sides.
         let reachable = Truth::new(&world, &mission).reachable;
         let side = |p: Point2<f64>| {
             let (sin, cos) = libm::sincos(degrees.to_radians());
@@ -119,12 +119,12 @@ fn a_robot_amid_open_space_goes_on_until_it_found_the_walls() {
     assert!(score.completeness >= 0.99, "{score:?} {cut_off:?}");
 }
 
-/// A simulated robot of which something breaks.
+/// A simulated robot with a part that breaks.
 struct Broken<'a> {
     robot: SimulatedRobot<'a>,
-    /// What each sensor says instead of what it measures.
+    /// The reading of each sensor instead of its measurement.
     says: Option<Range>,
-    /// The number of drives after which it cannot drive any more.
+    /// The number of drives after which the robot cannot drive any more.
     drives: usize,
 }
 
@@ -164,7 +164,7 @@ fn a_robot_that_hears_nothing_did_not_explore() {
 #[test]
 fn a_robot_that_is_boxed_in_did_not_explore() {
     assert_eq!(run_broken(None, 0).ending, Ending::StartBlocked);
-    // It gets some steps far, and then no farther.
+    // The robot gets some steps far, and then no farther.
     let run = run_broken(None, 9);
     assert_eq!(run.ending, Ending::BoxedIn);
     assert!(run.path_length > 0.5);
@@ -195,13 +195,13 @@ fn a_run_that_was_stopped_tells_not_seen_from_unreachable() {
     };
     let (stopped, ..) = run(&world, &config, at(1.5, 3.0), 1, some);
     assert_eq!(stopped.ending, Ending::BudgetSpent);
-    // More than the room behind the door, 3 × 6 m, was not seen.
+    // More than the room behind the door, 3 × 6 m, is not seen.
     assert!(count(&stopped, CellStatus::NotSeen) > 300);
     let (whole, score, _) = run(&world, &config, at(1.5, 3.0), 1, Limits::default());
     assert_eq!((score.completeness, count(&whole, CellStatus::NotSeen)), (1.0, 0));
 }
 
-/// A robot that bumps into something that is not there, where the door is.
+/// A robot that bumps into an obstacle at the door that is not there.
 struct Haunted<'a>(SimulatedRobot<'a>);
 
 impl Robot for Haunted<'_> {
@@ -226,7 +226,7 @@ fn what_is_cut_off_is_named_with_what_cuts_it_off() {
     assert_eq!(run.ending, Ending::Explored);
     assert!(score.completeness < 0.9 && cut_off.cells > 50, "{score:?} {cut_off:?}");
     assert!(cut_off.bumps > 0, "{cut_off:?}");
-    // What it could see through the door is not cut off.
+    // Cells that the robot could see through the door are not cut off.
     let truth = Truth::new(&world, &mission);
     let unseen = |(cell, reached): &(_, &bool)| **reached && !Truth::is_known_free(&run.map, *cell);
     assert!(cut_off.cells <= truth.reachable.iter().filter(unseen).count());

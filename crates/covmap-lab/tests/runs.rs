@@ -66,7 +66,7 @@ fn strategies() -> [Strategy; 5] {
     ]
 }
 
-/// Explores a world; refused where the robot cannot stand in it.
+/// Explores a world; the setup is refused if the robot cannot stand in it.
 fn check_that_it_ends(
     obstacles: Vec<Obstacle>,
     strategy: Strategy,
@@ -217,7 +217,7 @@ fn maps_of_different_runs_are_compared_over_the_same_cells_and_the_body_pins_non
         let own = truth.scored_cells(&world, &mission, &run);
         let accuracy = Accuracy::new(&truth, &mission, &run.map, &own);
         assert_eq!(accuracy.compared_cells, f64::from(u32::try_from(cells.len()).unwrap()));
-        // What is not known is uniform: half a coverage is missing of each end.
+        // Unknown cells are uniform: they are off by half a coverage at either end.
         let nothing = covmap::CoverageMap::new(mission.grid, config.model.bins).unwrap();
         let unknown = Accuracy::new(&truth, &mission, &nothing, &own);
         assert!((unknown.compared.mae_solid - 0.5).abs() < 1e-6);

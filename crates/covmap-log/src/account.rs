@@ -1,34 +1,34 @@
-//! What a log had, and what was taken from where.
+//! The account of a log: its contents, and the sources of every number.
 
 use super::Skipped;
 use super::skipped::plural;
 use covmap_sonar::Range;
 use serde::Serialize;
 
-/// What is known of a log from the frames that were read.
+/// The account of a log, from the frames read so far.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Account {
     /// The frames that were passed over.
     pub skipped: Skipped,
-    /// Each sensor of which there are frames: one ring of sonars, or one or more lasers.
+    /// Each sensor that has frames: one ring of sonars, or one or more lasers.
     pub sensors: Vec<SensorAccount>,
-    /// Where the poses come from.
+    /// The source of the poses.
     pub poses: String,
-    /// How many frames have a time that cannot place them, because it is too coarse or of another
-    /// clock than the odometry's: the order of lines did that, and the logger's time.
+    /// The number of frames that the order of lines and the logger's time placed, because their own
+    /// time is too coarse or of another clock than the odometry's.
     pub placed_by_order: usize,
-    /// How often the clock starts anew.
+    /// The number of times that the clock starts anew.
     pub restarts: usize,
-    /// The lines of other sensors and poses that were not used: tag, and number.
+    /// The lines of other sensors and poses that were not used: tag and number.
     pub left_out: Vec<(&'static str, usize)>,
 }
 
-/// What is known of one sensor of a log: a ring of sonars, or a laser.
+/// The account of one sensor of a log: a ring of sonars, or a laser.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SensorAccount {
-    /// Which lines it has: a tag, or the name of a file.
+    /// The source of the readings: the tag of their lines, or the name of a file.
     pub lines: &'static str,
-    /// Its geometry and ranges, and what says so.
+    /// The geometry and the ranges, and the source of each.
     pub taken: Vec<Taken>,
     /// The readings of each sonar, or of each beam.
     pub readings: Vec<Readings>,
@@ -36,34 +36,34 @@ pub struct SensorAccount {
     pub shortest_echo: f64,
     /// The longest echo \[m\].
     pub longest_echo: f64,
-    /// How many echoes are as long as that.
+    /// The number of echoes of this longest range.
     pub longest_echoes: usize,
 }
 
-/// Something that a map depends on.
+/// A number that a map depends on.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Taken {
-    /// What it is, with its value.
+    /// The name of the number, with its value.
     pub what: String,
-    /// What says so.
+    /// The source of the number.
     pub source: String,
 }
 
-/// How many readings of each kind there are.
+/// The numbers of readings of each kind.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
 pub struct Readings {
-    /// Something answered.
+    /// Echoes.
     pub echoes: usize,
-    /// Nothing answered.
+    /// Readings without an echo.
     pub no_echoes: usize,
-    /// There is no reading: 0, or below the shortest range.
+    /// Missing readings: 0, or below the shortest range.
     pub missing: usize,
-    /// The reading is NaN or negative, or its frame was skipped.
+    /// Readings that are NaN or negative, or whose frame was skipped.
     pub skipped: usize,
 }
 
 impl Readings {
-    /// All readings.
+    /// Returns the number of all readings.
     pub fn total(&self) -> usize {
         self.echoes + self.no_echoes + self.missing + self.skipped
     }
@@ -81,7 +81,7 @@ impl SensorAccount {
         }
     }
 
-    /// The readings of all its sonars or beams.
+    /// Returns the readings of all sonars or beams.
     pub fn total(&self) -> Readings {
         self.readings.iter().fold(Readings::default(), |sum, one| Readings {
             echoes: sum.echoes + one.echoes,
@@ -98,8 +98,7 @@ impl SensorAccount {
         }
     }
 
-    /// Counts a frame that is used. Of `unusable` sensors the reading is no number that it could
-    /// be.
+    /// Counts a frame that is used; the readings of `unusable` sensors are not possible ranges.
     #[allow(clippy::float_cmp, reason = "the same digits")]
     pub(super) fn count(&mut self, ranges: &[Range], unusable: &[usize]) {
         self.make_room(ranges.len());
@@ -134,7 +133,7 @@ impl SensorAccount {
         self.readings.resize(room, Readings::default());
     }
 
-    /// What looks wrong with its readings.
+    /// Returns what looks wrong with the readings, as a sentence.
     fn suspicion(&self) -> Option<String> {
         let Readings { echoes, no_echoes, missing, .. } = self.total();
         let read = echoes + no_echoes + missing;
@@ -150,7 +149,7 @@ impl SensorAccount {
                  are they not in metres?"
             ));
         }
-        // Where nothing answers, the same number stands again and again.
+        // Without an echo, many sensors report the same number again and again.
         let piled = self.longest_echoes >= 20 && 50 * self.longest_echoes >= echoes;
         piled.then(|| {
             format!(
@@ -163,7 +162,7 @@ impl SensorAccount {
 }
 
 impl Account {
-    /// Begins to count a sensor; its number.
+    /// Begins to count a sensor, and returns its number.
     pub(super) fn add_sensor(&mut self, lines: &'static str) -> usize {
         self.sensors.push(SensorAccount::new(lines));
         self.sensors.len() - 1
@@ -176,7 +175,8 @@ impl Account {
         }
     }
 
-    /// What a user should know of the log beside what was skipped: a sentence each.
+    /// Returns the remarks about the log that a user should read, apart from the skipped frames,
+    /// each as a sentence.
     pub fn remarks(&self) -> Vec<String> {
         let mut remarks = Vec::new();
         if self.placed_by_order > 0 {

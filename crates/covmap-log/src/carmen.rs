@@ -14,7 +14,7 @@ use nalgebra::{Isometry2, Translation2, UnitComplex};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The lasers, those first that are read where a log has several lines for one scan.
+/// The lasers; if a log has several lines for one scan, the first of these is read.
 const LASERS: [Laser; 9] = [
     Laser { number: 1, tag: "FLASER" },
     Laser { number: 2, tag: "RLASER" },
@@ -27,7 +27,7 @@ const LASERS: [Laser; 9] = [
     Laser { number: 5, tag: "RAWLASER5" },
 ];
 
-/// What is known of a laser from its first line.
+/// The facts about a laser from its first line.
 struct LaserDevice {
     laser: Laser,
     device: Device<(usize, Option<Described>)>,
@@ -35,21 +35,21 @@ struct LaserDevice {
     mount: Option<Isometry2<f64>>,
 }
 
-/// The frames of a CARMEN log, with the poses that it has for them.
+/// The frames of a CARMEN log, with the poses that the log gives them.
 pub(super) struct CarmenLog {
     lines: Lines,
     sensor: Sensor,
-    /// What the log does not say of its sonars.
+    /// The sonars as configured, for all that the log does not state.
     configured: SonarRing,
-    /// Whether poses come from elsewhere.
+    /// Whether poses come from another file.
     posed: bool,
-    /// Whether `TRUEPOS` has the poses, and not `ODOM` or the lines of lasers.
+    /// Whether `TRUEPOS` has the poses, not `ODOM` or the lines of lasers.
     true_poses: bool,
     parameters: Parameters,
     sonar: Device<(f64, Vec<[f64; 3]>)>,
     lasers: BTreeMap<u8, LaserDevice>,
     queue: Queue,
-    /// How many lines of sensors there are that are not wanted.
+    /// The number of lines of each sensor that is not wanted.
     unwanted: BTreeMap<&'static str, usize>,
     ended: bool,
 }
@@ -80,7 +80,7 @@ impl CarmenLog {
             sensor: options.sensor,
             configured: options.ring.clone(),
             posed: options.poses.is_some(),
-            // A few are those that a localisation reported at times.
+            // A few such lines come from a localisation that reported now and then.
             true_poses: truths > 0 && 4 * truths >= odometry,
             parameters,
             sonar: Device::new(),
@@ -95,17 +95,17 @@ impl CarmenLog {
         self.lines.path()
     }
 
-    /// The lines of sensors that are not wanted, and how many there are.
+    /// Returns the lines of sensors that are not wanted, with their numbers.
     pub(super) fn unwanted(&self) -> Vec<(&'static str, usize)> {
         self.unwanted.iter().map(|(tag, count)| (*tag, *count)).collect()
     }
 
-    /// Where the robot passed after the last frame.
+    /// Returns the poses that the robot passed after the last frame.
     pub(super) fn rest(&mut self) -> Vec<Passed> {
         self.queue.rest()
     }
 
-    /// The next good frame. It has its pose unless all poses come from elsewhere.
+    /// Returns the next good frame, with its pose unless all poses come from another file.
     pub(super) fn next(&mut self, account: &mut Account) -> Result<Option<Measured>, LogError> {
         loop {
             if let Some(frame) = self.queue.pop(self.ended, self.lines.path(), account) {
@@ -123,11 +123,11 @@ impl CarmenLog {
         }
     }
 
-    /// Takes in the line; gives its frame if that need not wait for a pose.
+    /// Reads the line, and returns its frame if the frame need not wait for a pose.
     fn read(&mut self, account: &mut Account) -> Option<Measured> {
         let text = self.lines.text().into_owned();
         let (tag, rest) = split(&text);
-        // A line of another tag is not split: it may have hundreds of words.
+        // A line of another tag is not split, because it may have hundreds of words.
         let fields = || Fields::new(rest);
         let laser = LASERS.iter().find(|laser| laser.tag == tag);
         match (tag, laser, self.sensor) {
@@ -170,7 +170,7 @@ impl CarmenLog {
         }
     }
 
-    /// Takes in a pose of the robot.
+    /// Reads a pose of the robot.
     fn fix(&mut self, tag: &str, fields: &mut Fields<'_>, account: &mut Account) {
         let tag = if tag == "ODOM" { "ODOM" } else { "TRUEPOS" };
         if self.posed || self.true_poses != (tag == "TRUEPOS") {
@@ -191,7 +191,7 @@ impl CarmenLog {
         }
     }
 
-    /// Takes in a frame, with its pose by odometry if it has a pose of its own.
+    /// Adds a frame, with its pose by odometry if it has a pose of its own.
     fn take(
         &mut self,
         frame: Result<(Measured, Option<Isometry2<f64>>), Damage>,
@@ -227,8 +227,10 @@ impl CarmenLog {
         Measured::new(&self.lines, stamp, ring, &ranges, account)
     }
 
-    /// The pose is the one that puts the laser where the line says it was: in a corrected log
-    /// the poses of the laser are corrected, and those of the robot are not.
+    /// Returns the frame of a laser line, with the robot's pose and its pose by odometry.
+    ///
+    /// The pose puts the laser where the line says it was: a corrected log corrects the poses of
+    /// the laser, not those of the robot.
     fn laser(
         &mut self,
         number: u8,
@@ -275,14 +277,16 @@ impl From<Laser> for LaserDevice {
     }
 }
 
-/// The tag of a line, and what follows it.
+/// Returns the tag of a line, and the rest of the line.
 fn split(line: &str) -> (&str, &str) {
     let line = line.trim();
     line.split_once([' ', '\t']).unwrap_or((line, ""))
 }
 
-/// The beams of a ring as a line describes it. What it does not say, the shortest and the
-/// longest range, is in parameters, or else as configured.
+/// Returns the beams of a ring as a line describes it.
+///
+/// The line does not state the shortest and the longest range; these come from parameters, or else
+/// from the configuration.
 fn sonar_beams(
     cone_angle: f64,
     places: &[[f64; 3]],

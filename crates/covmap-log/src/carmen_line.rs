@@ -1,4 +1,4 @@
-//! What the lines of a CARMEN log say, and what they leave open.
+//! The lines of a CARMEN log.
 
 use super::SkipReason;
 use super::fields::{Fields, Written};
@@ -6,7 +6,7 @@ use super::skipped::Damage;
 use super::track::Stamp;
 use nalgebra::Isometry2;
 
-/// The tags of the lines that are read.
+/// The tags of the lines that the reader uses.
 pub(super) const TAGS: [&str; 13] = [
     "PARAM",
     "ODOM",
@@ -23,7 +23,7 @@ pub(super) const TAGS: [&str; 13] = [
     "RAWLASER5",
 ];
 
-/// A line `SONAR`: the readings, and where the sensors are in the frame of the robot.
+/// A line `SONAR`: the readings, and the places of the sensors in the frame of the robot.
 pub(super) struct SonarLine {
     /// The whole opening angle of each cone \[rad\].
     pub(super) cone_angle: f64,
@@ -33,16 +33,16 @@ pub(super) struct SonarLine {
     pub(super) stamp: Stamp,
 }
 
-/// What a line says of its laser, but `FLASER` and `RLASER`.
+/// The description of a laser in its line; `FLASER` and `RLASER` have none.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Described {
     /// The angle of the first beam \[rad\].
     pub(super) start: f64,
-    /// From the first beam to the last \[rad\].
+    /// The angle from the first beam to the last \[rad\].
     pub(super) field_of_view: f64,
-    /// Between two beams \[rad\].
+    /// The angle between two beams \[rad\].
     pub(super) resolution: f64,
-    /// Metres.
+    /// The largest range \[m\].
     pub(super) max_range: f64,
 }
 
@@ -55,15 +55,15 @@ pub(super) struct LaserLine {
     pub(super) stamp: Stamp,
 }
 
-/// `ODOM x y theta tv rv accel ipc_timestamp host logger_timestamp`, or
-/// `TRUEPOS x y theta odom_x odom_y odom_theta ipc_timestamp host logger_timestamp`
+/// Reads `ODOM x y theta tv rv accel ipc_timestamp host logger_timestamp`, or `TRUEPOS x y theta
+/// odom_x odom_y odom_theta ipc_timestamp host logger_timestamp`.
 pub(super) fn pose(fields: &mut Fields<'_>) -> Result<(Stamp, Isometry2<f64>), Damage> {
     let pose = fields.pose(["x", "y", "theta"], 1.0, 1.0)?;
     fields.skip(3);
     Ok((end(fields)?, pose))
 }
 
-/// `SONAR cone_angle n r_1 … r_n (x y theta)·n ipc_timestamp host logger_timestamp`
+/// Reads `SONAR cone_angle n r_1 … r_n (x y theta)·n ipc_timestamp host logger_timestamp`.
 pub(super) fn sonar(fields: &mut Fields<'_>) -> Result<SonarLine, Damage> {
     let cone_angle = fields.number("cone_angle")?;
     let count = fields.count("number of ranges")?;
@@ -77,7 +77,8 @@ pub(super) fn sonar(fields: &mut Fields<'_>) -> Result<SonarLine, Damage> {
     Ok(SonarLine { cone_angle, ranges, places, stamp: end(fields)? })
 }
 
-/// `FLASER n r_1 … r_n x y theta odom_x odom_y odom_theta ipc_timestamp host logger_timestamp`
+/// Reads `FLASER n r_1 … r_n x y theta odom_x odom_y odom_theta ipc_timestamp host
+/// logger_timestamp`.
 pub(super) fn plain_laser(fields: &mut Fields<'_>) -> Result<LaserLine, Damage> {
     let count = fields.count("number of ranges")?;
     expect_words(fields, count, count.saturating_add(6))?;
@@ -87,10 +88,11 @@ pub(super) fn plain_laser(fields: &mut Fields<'_>) -> Result<LaserLine, Damage> 
     Ok(LaserLine { described: None, ranges, poses: Some([laser, robot]), stamp: end(fields)? })
 }
 
-/// `ROBOTLASER1 type start fov resolution max accuracy remission_mode n r… m rem… laser_x
+/// Reads `ROBOTLASER1 type start fov resolution max accuracy remission_mode n r… m rem… laser_x
 /// laser_y laser_theta robot_x robot_y robot_theta tv rv forward_safety side_safety turn_axis
-/// ipc_timestamp host logger_timestamp`; of `RAWLASER1`, nothing between the remissions and the
-/// time.
+/// ipc_timestamp host logger_timestamp`.
+///
+/// A line `RAWLASER1` has nothing between the remissions and the time.
 pub(super) fn described_laser(fields: &mut Fields<'_>, raw: bool) -> Result<LaserLine, Damage> {
     fields.skip(1);
     let start = fields.number("start angle")?;
@@ -116,16 +118,16 @@ pub(super) fn described_laser(fields: &mut Fields<'_>, raw: bool) -> Result<Lase
     Ok(LaserLine { described, ranges, poses: Some([laser, robot]), stamp: end(fields)? })
 }
 
-/// The time at which the sensor measured, and a host after it: without that, the number may
-/// have been cut. The logger's time may be left out.
+/// Reads the time of the measurement, the host, and the logger's time, which may be absent.
+///
+/// Without a host, the number before it may have been cut.
 fn end(fields: &mut Fields<'_>) -> Result<Stamp, Damage> {
     let time = fields.time("ipc_timestamp", 1.0)?;
     fields.word("host")?;
     Ok(Stamp { time, logger: fields.number_if_any() })
 }
 
-/// Checks that the right number of words comes before the time, the host and the logger's time, which may
-/// be left out.
+/// Checks the number of words before the time, the host and the logger's time, which may be absent.
 fn expect_words(fields: &Fields<'_>, count: usize, words: usize) -> Result<(), Damage> {
     let there = fields.left();
     let without = there == words.saturating_add(2) && !fields.ends_with_number();
@@ -136,7 +138,7 @@ fn expect_words(fields: &Fields<'_>, count: usize, words: usize) -> Result<(), D
     Err(if more { wrong_count(count) } else { too_few(fields, count) })
 }
 
-/// A line that has its end, but not all of its ranges, was not cut short.
+/// Returns the fault of a line with too few words; a line that has its end was not cut short.
 fn too_few(fields: &Fields<'_>, count: usize) -> Damage {
     if fields.ends_with_host_and_time() {
         return wrong_count(count);

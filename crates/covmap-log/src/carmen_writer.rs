@@ -4,7 +4,7 @@ use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::Isometry2;
 use std::io::{self, Write};
 
-/// The parameters in which our logs say what the format has no place for \[m\].
+/// The parameters with which our logs state ranges that the format has no place for \[m\].
 pub(super) const MIN_RANGE: &str = "covmap_sonar_min_range";
 pub(super) const MAX_RANGE: &str = "covmap_sonar_max_range";
 
@@ -15,9 +15,9 @@ pub enum CarmenWriterError {
     /// The operating system refused.
     #[error("{0}")]
     Io(#[from] io::Error),
-    /// A line has one angle for all sensors.
+    /// A CARMEN log has one cone and one pair of ranges for all sensors.
     #[error(
-        "sensor {0} has another cone or other ranges than sensor 0, which a CARMEN log cannot say"
+        "sensor {0} has another cone or other ranges than sensor 0, which a CARMEN log cannot express"
     )]
     Unequal(usize),
     /// The scan comes from another ring.
@@ -25,15 +25,15 @@ pub enum CarmenWriterError {
     Count {
         /// The scan, counted from 0.
         scan: usize,
-        /// How many readings it has.
+        /// The number of readings in the scan.
         ranges: usize,
-        /// How many sensors there are.
+        /// The number of sensors in the ring.
         sensors: usize,
     },
-    /// A pose or a time that is no number, or time that runs backwards.
+    /// A pose or a time that is not finite, or a time before the last one.
     #[error("scan {0}: pose and time must be finite, and time must not run backwards")]
     PoseOrTime(usize),
-    /// An echo that would be read as none or as missing.
+    /// An echo that a reader would take for none, or for missing.
     #[error("scan {scan}: an echo at {range} m is out of the sensor's range, {min} to {max} m")]
     Echo {
         /// The scan, counted from 0.
@@ -42,18 +42,19 @@ pub enum CarmenWriterError {
         range: f64,
         /// The shortest range \[m\].
         min: f64,
-        /// The longest range, which is none any more \[m\].
+        /// The longest range, from which a reading means no echo \[m\].
         max: f64,
     },
 }
 
-/// Writes scans of a ring as a CARMEN text log: for each a line `ODOM` and a line `SONAR` of the
-/// same time.
+/// Writes scans of a ring as a CARMEN text log.
 ///
-/// A [`LogReader`](super::LogReader) makes the same scans of it: ranges, times and positions to
+/// Each scan becomes a line `ODOM` and a line `SONAR` of the same time.
+///
+/// A [`LogReader`](super::LogReader) reads the same scans from it: ranges, times and positions to
 /// the last bit, headings up to rounding (10⁻¹⁵ rad). `NoEcho` is written as the longest range,
-/// `Missing` as 0. The format has no place for the shortest and longest ranges; they are in
-/// `PARAM covmap_sonar_min_range` and `PARAM covmap_sonar_max_range` \[m\].
+/// `Missing` as 0. The format has no place for the shortest and longest ranges; they are in `PARAM
+/// covmap_sonar_min_range` and `PARAM covmap_sonar_max_range` \[m\].
 #[derive(Debug)]
 pub struct CarmenWriter<'a, W: Write> {
     ring: &'a SonarRing,
@@ -66,7 +67,7 @@ impl<'a, W: Write> CarmenWriter<'a, W> {
     /// Begins a log.
     ///
     /// # Errors
-    /// If the sensors have different cones or ranges, or it cannot be written.
+    /// If the sensors have different cones or ranges, or the log cannot be written.
     #[allow(clippy::float_cmp, reason = "equal means equal")]
     pub fn new(ring: &'a SonarRing, mut out: W) -> Result<Self, CarmenWriterError> {
         let shape = |i: usize| {
@@ -84,10 +85,10 @@ impl<'a, W: Write> CarmenWriter<'a, W> {
         Ok(Self { ring, out, scans: 0, last: f64::NEG_INFINITY })
     }
 
-    /// Writes where the robot was at a time between two scans, so that its way is known.
+    /// Writes the robot's pose at a time between two scans, which keeps its way known.
     ///
     /// # Errors
-    /// If it is no pose or time after those before it, or cannot be written.
+    /// If pose or time is not finite, the time runs backwards, or the log cannot be written.
     pub fn pass(&mut self, time: f64, pose: &Isometry2<f64>) -> Result<(), CarmenWriterError> {
         let (x, y, theta) = (pose.translation.x, pose.translation.y, pose.rotation.angle());
         let finite = [x, y, theta, time].iter().all(|value| value.is_finite());
@@ -102,7 +103,7 @@ impl<'a, W: Write> CarmenWriter<'a, W> {
     /// Writes a scan.
     ///
     /// # Errors
-    /// If it does not fit the ring or the scans before it, or cannot be written.
+    /// If the scan does not fit the ring or the scans before it, or cannot be written.
     pub fn write(&mut self, scan: &Scan) -> Result<(), CarmenWriterError> {
         let number = self.scans;
         let Scan { pose, time, ranges } = scan;
@@ -123,7 +124,7 @@ impl<'a, W: Write> CarmenWriter<'a, W> {
         let (out, places) = (&mut self.out, decimals(max));
         write!(out, "SONAR {:?} {}", 2.0 * beams[0].half_angle, beams.len())?;
         for value in values {
-            // With fewer decimals than the longest range has, an echo could be that range, cut.
+            // With fewer decimals than the longest range, an echo could be the longest range, cut.
             match decimals(value) < places {
                 true => write!(out, " {value:.places$}")?,
                 false => write!(out, " {value:?}")?,
@@ -138,17 +139,17 @@ impl<'a, W: Write> CarmenWriter<'a, W> {
         Ok(())
     }
 
-    /// Hands all that was written to the operating system, and says how many scans there were.
+    /// Flushes the log, and returns the number of scans.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// If the log cannot be written.
     pub fn finish(mut self) -> Result<usize, CarmenWriterError> {
         self.out.flush()?;
         Ok(self.scans)
     }
 }
 
-/// With how many decimals a number is written.
+/// Returns the number of decimals with which a number is written.
 fn decimals(value: f64) -> usize {
     format!("{value:?}").split_once('.').map_or(0, |(_, decimals)| decimals.len())
 }

@@ -1,11 +1,11 @@
-//! Clocks that are coarse, leap, start anew or are not in order; and the way between frames.
+//! Clocks that are coarse, leap, start anew or are out of order; and the way between frames.
 
 use super::tests::{carmen, files, options};
 use super::*;
 use std::fmt::Write;
 use std::io::Cursor;
 
-/// A line `ODOM` at x \[m\] with a time by the sensor's clock and one by the logger's.
+/// Returns a line `ODOM` at x \[m\] with a time by the sensor's clock and one by the logger's.
 fn odom(x: f64, time: impl std::fmt::Display, logger: f64) -> String {
     format!("ODOM {x:.3} 0 0 0 0 0 {time} h {logger:.3}\n")
 }
@@ -19,8 +19,9 @@ fn flaser(x: f64, time: f64) -> String {
     format!("FLASER 181 {ranges} {x} 0 0 {x} 0 0 {time:.3} h {time:.3}\n")
 }
 
-/// A robot that drives at 0.2 m/s and measures twice in a second, 40 times: its lines, whose
-/// clocks show what `shown` makes of the true time.
+/// Returns the lines of a robot that drives at 0.2 m/s and measures twice a second, 40 times.
+///
+/// Its clocks show what `shown` makes of the true time.
 fn drive(shown: impl Fn(usize, f64) -> String, logger: impl Fn(f64) -> f64) -> String {
     let step = |i: usize| {
         let (t, show) = (time(i), shown(i, time(i)));
@@ -29,7 +30,7 @@ fn drive(shown: impl Fn(usize, f64) -> String, logger: impl Fn(f64) -> f64) -> S
     (0..40).map(step).collect()
 }
 
-/// The time of a frame \[s\].
+/// Returns the time of a frame \[s\].
 fn time(frame: usize) -> f64 {
     0.5 * f64::from(u32::try_from(frame).unwrap())
 }
@@ -38,7 +39,7 @@ fn places(frames: &[LogFrame]) -> Vec<f64> {
     frames.iter().map(|frame| frame.scan.pose.translation.x).collect()
 }
 
-/// All frames are used, and each is within `most` \[m\] of where it was.
+/// Checks that all frames are used, and each is within `most` \[m\] of its true pose.
 #[track_caller]
 fn all_are_placed(log: &str, most: f64) {
     let (frames, skipped, error) = carmen(Sensor::Sonar, log);
@@ -60,7 +61,7 @@ fn where_times_are_too_coarse_the_order_of_lines_decides() {
     all_are_placed(&drive(seconds, |_| 7.0), 1e-9);
 }
 
-/// A log at 10 Hz, with each scan 0.04 s after its odometry, and clocks of their own.
+/// Returns a log at 10 Hz, with each scan 0.04 s after its odometry, and separate clocks.
 fn mixed(odometry: fn(f64) -> f64, scans: fn(f64) -> f64, has_logger: bool) -> String {
     let mut log = String::new();
     for i in 0..40 {
@@ -81,7 +82,7 @@ fn one_coarse_clock_is_enough_to_follow_the_lines() {
     all_are_placed(&mixed(f64::floor, |t| t, true), 0.0081);
     all_are_placed(&mixed(f64::floor, |t| t, false), 0.0081);
     all_are_placed(&mixed(|t| t, f64::floor, true), 0.0081);
-    // By the logger's time it is not even the odometry before.
+    // The logger's time places the scan between two fixes, not at the one before.
     let log = mixed(f64::floor, f64::floor, true);
     let places = places(&carmen(Sensor::Sonar, log).0);
     assert!((places[20] - 0.2 * (time(20) + 0.04)).abs() < 1e-6, "{places:?}");
@@ -105,7 +106,7 @@ fn that_times_are_too_coarse_is_said() {
     assert!(anew.remarks()[0].contains("starts anew 1 time"), "{:?}", anew.remarks());
 }
 
-/// All frames but one are used, each where it was.
+/// Checks that all frames but one are used, each at its true pose.
 #[track_caller]
 fn one_is_lost(log: &str, lost: usize) {
     let (frames, skipped, error) = carmen(Sensor::Sonar, log);
@@ -125,7 +126,7 @@ fn one_wrong_reading_of_the_clock_loses_one_frame() {
             one_is_lost(&drive(leaping, |t| t), at);
         }
     }
-    // The scan's clock alone, or that of the odometry.
+    // The clock of the scan leaps alone, or that of the odometry does.
     let good = drive(|_, t| t.to_string(), |t| t);
     let line = sonar(time(7), time(7));
     one_is_lost(&good.replace(&line, &sonar(86_400, time(7))), 7);
@@ -159,7 +160,7 @@ fn a_clock_that_starts_anew_is_followed() {
     all_are_placed(&drive(anew(5000.0), |t| t), 1e-9);
     all_are_placed(&drive(anew(0.3), |t| t), 1e-9);
     all_are_placed(&drive(|i, t| (t - 8.0 * (i / 15) as f64).to_string(), |t| t), 1e-9);
-    // Set ahead, and not back again.
+    // The clock is set ahead, and not set back.
     all_are_placed(&drive(|i, t| if i < 9 { t } else { t + 86_400.0 }.to_string(), |t| t), 1e-9);
 }
 
@@ -189,7 +190,7 @@ fn odometry_may_be_fast_and_scans_may_be_late() {
         let t = 0.001 * f64::from(i);
         log += &odom(t, t, t);
         if i % 50 == 0 && i > 200 {
-            // It was measured 0.2 s ago.
+            // The scan was measured 0.2 s ago.
             log += &sonar(format!("{:.4}", t - 0.2), t);
         }
     }
@@ -234,7 +235,7 @@ fn the_way_between_frames_is_that_of_the_odometry() {
         .collect();
     let expected = [(3.0, 1.0, 1.0), (3.0, 2.0, 1.0), (3.0, 3.0, 1.0), (3.0, 0.0, 1.0)];
     assert_eq!(way[..4], expected);
-    // The last is where the scan was taken.
+    // The last pose is that of the scan.
     assert_eq!(way[4..], [(3.0, 0.0, 0.0)]);
     assert_eq!(frames[0].way.len(), 2);
 }

@@ -1,4 +1,4 @@
-//! The sensor that a log comes from: the one of its first frame.
+//! The sensor of a log: that of its first frame.
 
 use super::fields::Written;
 use super::lines::Lines;
@@ -10,29 +10,29 @@ use nalgebra::{Isometry2, Vector2};
 use std::path::Path;
 use std::sync::Arc;
 
-/// So often the shortest and longest ranges of a sensor may change in a log.
+/// The largest number of changes of a sensor's shortest and longest ranges in a log.
 const MOST_LIMITS: usize = 8;
 
 /// A frame before its pose is known.
 pub(super) struct Measured {
     pub(super) line: usize,
     pub(super) stamp: Stamp,
-    /// Its number in the account.
+    /// The sensor's number in the account.
     pub(super) sensor: usize,
     pub(super) ring: Arc<SonarRing>,
     pub(super) ranges: Vec<Range>,
-    /// The sensors whose reading is no number that it could be.
+    /// The sensors whose reading is not a possible range.
     pub(super) unusable: Vec<usize>,
-    /// Whether its time is that of the frame before it.
+    /// Whether the frame has the time of the frame before it.
     pub(super) tied: bool,
-    /// Where the robot was, if that is known.
+    /// The robot's pose, if known.
     pub(super) pose: Option<Isometry2<f64>>,
-    /// The way of the odometry to it, from the frame before.
+    /// The way of the odometry from the frame before.
     pub(super) way: Vec<Passed>,
 }
 
 impl Measured {
-    /// The frame in the present line of a log, without a pose.
+    /// Returns the frame in the present line of a log, without a pose.
     pub(super) fn new(
         lines: &Lines,
         stamp: Stamp,
@@ -51,17 +51,17 @@ impl Measured {
         Ok(Self { line, stamp, sensor, ring, ranges, unusable, tied, pose, way })
     }
 
-    /// Counts it as skipped.
+    /// Counts the frame as skipped.
     pub(super) fn skip(&self, path: &Path, damage: Damage, account: &mut Account) {
         account.sensors[self.sensor].count_skipped(self.ranges.len());
         account.skipped.add(path, self.line, damage);
     }
 }
 
-/// The ring that all frames of a sensor share. `I` is what a line says of it.
+/// The ring that all frames of a sensor share; `I` is the description of the sensor in a line.
 pub(super) struct Device<I> {
     first: Option<(I, usize)>,
-    /// One for the shortest and longest ranges that were in force \[m\].
+    /// One ring for each pair of shortest and longest ranges \[m\].
     rings: Vec<((f64, f64), Arc<SonarRing>)>,
 }
 
@@ -70,8 +70,10 @@ impl<I: PartialEq> Device<I> {
         Self { first: None, rings: Vec::new() }
     }
 
-    /// Its number in the account, and its ring, which is made for the first frame; the others
-    /// must come from the same sensor. The account tells from where `beams` has them.
+    /// Returns the sensor's number in the account, and its ring.
+    ///
+    /// The first frame makes the ring; the other frames must come from the same sensor. The account
+    /// records the sources that `beams` reports.
     #[allow(clippy::float_cmp, reason = "the same numbers of the same lines")]
     pub(super) fn ring(
         &mut self,
@@ -107,8 +109,10 @@ impl<I: PartialEq> Device<I> {
     }
 }
 
-/// `count` beams of a laser at `mount` in the frame of the robot, from the angle `start`
-/// counter-clockwise in steps \[rad\], with their shortest and longest range \[m\].
+/// Returns `count` beams of a laser at `mount` in the frame of the robot.
+///
+/// The beams start at the angle `start`, counter-clockwise in steps \[rad\], and have a shortest
+/// and a longest range \[m\].
 pub(super) fn laser_beams(
     mount: &Isometry2<f64>,
     count: usize,
@@ -121,15 +125,15 @@ pub(super) fn laser_beams(
         min_range,
         max_range,
     };
-    // A ring of more is refused anyhow.
+    // A larger ring is refused anyway.
     (0..u32::try_from(count).unwrap_or(u32::MAX).min(1 << 16)).map(beam).collect()
 }
 
-/// What numbers mean as readings of a ring.
+/// Returns numbers as readings of a ring.
 ///
-/// From the longest range on there is no echo; below the shortest, at zero, and if it is NaN or
-/// negative, the reading is missing. The longest range may be rounded to, or cut at, the decimal
-/// places with which the readings are written.
+/// A number from the longest range on is no echo. A number below the shortest range, zero, a
+/// negative one and NaN are missing. The longest range may be rounded to, or cut at, the decimal
+/// places of the readings.
 fn readings(values: &[Written], ring: &SonarRing) -> Result<Vec<Range>, Damage> {
     if values.len() != ring.beams().len() {
         let fault =
@@ -144,16 +148,16 @@ fn readings(values: &[Written], ring: &SonarRing) -> Result<Vec<Range>, Damage> 
     Ok(values.iter().zip(ring.beams()).map(reading).collect())
 }
 
-/// The coarsest decimal place that a range is taken to be written with \[m\].
+/// The coarsest decimal place with which a range may be written \[m\].
 const COARSEST_PLACE: f64 = 0.1;
 
-/// Whether a range as it is written may be the longest, or is longer.
+/// Returns whether a range, as written, may be the longest, or is longer.
 fn is_longest(range: &Written, max_range: f64) -> bool {
     let place = range.place.min(COARSEST_PLACE);
     range.value >= max_range || range.value - max_range + place > 1e-9
 }
 
-/// A number with as many digits as are read, and no −0.
+/// Returns a number with the digits that the account shows, and no −0.
 pub(super) fn short(value: f64) -> f64 {
     (value * 1e4).round() / 1e4 + 0.0
 }
@@ -163,7 +167,7 @@ mod tests {
     use super::super::fields::Fields;
     use super::*;
 
-    /// What a number that is written means where the longest range is `max_range` \[m\].
+    /// Checks the reading of a written number, for the longest range `max_range` \[m\].
     #[track_caller]
     fn check(word: &str, max_range: f64, expected: Range) {
         let beam = Beam { pose: Isometry2::identity(), half_angle: 0.1, min_range: 0.2, max_range };
@@ -177,7 +181,7 @@ mod tests {
         for written in ["2", "2.0", "2.00", "2.000", "2.0000001", "9.9", "inf"] {
             check(written, 2.0, Range::NoEcho);
         }
-        // Rounded, or cut.
+        // These are rounded, or cut.
         check("5.3", 5.3333, Range::NoEcho);
         check("5.33", 5.3333, Range::NoEcho);
         check("5.333", 5.3333, Range::NoEcho);

@@ -1,4 +1,4 @@
-//! What can be wrong with a log as a whole.
+//! Errors of a log as a whole.
 
 use super::limits::{LONGEST_LINE, MOST_POSES, MOST_RATIO};
 use super::{Sensor, Skipped};
@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 /// Why a log cannot be read, or not any further: one sentence that names file and line.
 ///
-/// A frame that is wrong is no error: it is passed over and counted by [`Skipped`].
+/// A wrong frame is not an error: the reader passes over it, and [`Skipped`] counts it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum LogError {
@@ -16,13 +16,13 @@ pub enum LogError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the operating system said.
+        /// The error of the operating system.
         source: io::Error,
     },
     /// A pipe, a device, or a folder where a file should be.
     #[error("{}: is no file that can be read twice", path.display())]
     NotAFile {
-        /// What it is.
+        /// The pipe, device or folder.
         path: PathBuf,
     },
     /// A file of another kind.
@@ -30,15 +30,15 @@ pub enum LogError {
     Foreign {
         /// The file or folder.
         path: PathBuf,
-        /// What it is, and what reads it.
+        /// The kind of file, and the program that reads it.
         kind: &'static str,
     },
-    /// More poses than are held.
+    /// The file has more poses than the reader holds.
     #[error("{}:{line}: has more than {MOST_POSES} poses; cut it, or thin it out", path.display())]
     TooManyPoses {
         /// The file.
         path: PathBuf,
-        /// The line with the first pose that is too much, counted from 1.
+        /// The line with the first pose beyond the limit, counted from 1.
         line: usize,
     },
     /// A folder without one of its files.
@@ -46,7 +46,7 @@ pub enum LogError {
     MissingFile {
         /// The folder.
         path: PathBuf,
-        /// The file.
+        /// The missing file.
         name: &'static str,
     },
     /// A folder with the readings of another sensor alone.
@@ -54,53 +54,53 @@ pub enum LogError {
     OtherSensor {
         /// The folder.
         path: PathBuf,
-        /// The file that is not there.
+        /// The missing file.
         name: &'static str,
-        /// The file that is.
+        /// The file that is there.
         has: &'static str,
     },
     /// A line longer than any of a log.
-    #[error("{}:{line}: the line has more than {LONGEST_LINE} bytes; this is no log", path.display())]
+    #[error("{}:{line}: the line has more than {LONGEST_LINE} bytes; this is not a log", path.display())]
     LongLine {
         /// The file.
         path: PathBuf,
         /// The line, counted from 1.
         line: usize,
     },
-    /// The file is packed, and damaged or cut short.
+    /// The file is packed, and is damaged or cut short.
     #[error("{}:{line}: the gzip data are damaged or cut short: {source}", path.display())]
     Gzip {
         /// The file.
         path: PathBuf,
         /// The line that could not be unpacked, counted from 1.
         line: usize,
-        /// What is wrong.
+        /// The error of the decoder.
         source: io::Error,
     },
-    /// The file is packed, and unpacks as if without end.
+    /// The file is packed, and unpacks to far more than a log.
     #[error("{}:{line}: unpacks to more than {MOST_RATIO} times its size, which no log does", path.display())]
     Unpacked {
         /// The file.
         path: PathBuf,
-        /// The line at which it became too much, counted from 1.
+        /// The line at which the limit was passed, counted from 1.
         line: usize,
     },
-    /// Not one frame of the log can be used.
+    /// No frame of the log can be used.
     #[error("{}: has no scan that can be used: {}", path.display(), in_words(skipped, wanted, others))]
     NoScans {
         /// The file.
         path: PathBuf,
-        /// What was looked for.
+        /// The wanted lines.
         wanted: &'static str,
-        /// How many lines of the other sensors there are.
+        /// The number of lines of each other sensor.
         others: Vec<(&'static str, usize)>,
-        /// What was found instead.
+        /// The frames that were passed over.
         skipped: Box<Skipped>,
     },
 }
 
 impl LogError {
-    /// The sensor that the log has, if it has nothing of the wanted one.
+    /// Returns the sensor that the log has, if it has no lines of the wanted one.
     pub fn other_sensor(&self) -> Option<Sensor> {
         let is_sonar = match self {
             Self::OtherSensor { has, .. } => *has == "sonar.txt",

@@ -5,17 +5,17 @@ use super::skipped::Damage;
 use nalgebra::{Isometry2, Vector2};
 use std::fmt::Display;
 
-/// No robot is farther from the origin than this \[m\].
+/// The largest distance of a robot from the origin \[m\].
 const FARTHEST: f64 = 1e7;
-/// No clock shows more than this \[s\].
+/// The latest time of a clock \[s\].
 const LATEST: f64 = 1e13;
 
-/// A range as it is written.
+/// A range as written.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Written {
-    /// Metres.
+    /// The value \[m\].
     pub(super) value: f64,
-    /// What one more in its last decimal place is worth \[m\]; 0 if that cannot be told.
+    /// The worth of one unit in the last decimal place \[m\]; 0 if unknown.
     pub(super) place: f64,
 }
 
@@ -30,19 +30,19 @@ impl<'a> Fields<'a> {
         Self { words: line.split_ascii_whitespace().collect(), next: 0 }
     }
 
-    /// How many words there are after those that were taken.
+    /// Returns the number of words left.
     pub(super) fn left(&self) -> usize {
         self.words.len() - self.next
     }
 
-    /// Whether the line ends as CARMEN ends its lines, with a host that is no number and a
-    /// time.
+    /// Returns whether the line ends as CARMEN ends its lines: with a host that is not a number,
+    /// and a time.
     pub(super) fn ends_with_host_and_time(&self) -> bool {
         let number = |word: &&str| word.parse::<f64>().is_ok();
         matches!(self.words[self.next..], [.., host, time] if !number(&host) && number(&time))
     }
 
-    /// Whether the line ends in a number.
+    /// Returns whether the line ends in a number.
     pub(super) fn ends_with_number(&self) -> bool {
         self.words.last().is_some_and(|word| word.parse::<f64>().is_ok())
     }
@@ -53,13 +53,13 @@ impl<'a> Fields<'a> {
         word.ok_or_else(|| unreadable(field, "is missing; the line is cut short"))
     }
 
-    /// Any number, also NaN.
+    /// Reads any number, also NaN.
     fn any_number(&mut self, field: impl Display + Copy) -> Result<f64, Damage> {
         let word = self.word(field)?;
         word.parse().map_err(|_| unreadable(field, &format!("`{}` is not a number", short(word))))
     }
 
-    /// A number of at most `most`, up or down.
+    /// Reads a number whose absolute value is at most `most`.
     fn number_up_to(&mut self, field: impl Display + Copy, most: f64) -> Result<f64, Damage> {
         let value = self.any_number(field)?;
         let good = (-most..=most).contains(&value);
@@ -70,12 +70,12 @@ impl<'a> Fields<'a> {
         self.number_up_to(field, FARTHEST)
     }
 
-    /// A number, if the next word is one.
+    /// Reads a number, if the next word is one.
     pub(super) fn number_if_any(&mut self) -> Option<f64> {
         self.number_up_to("", LATEST).ok()
     }
 
-    /// A time, in units of which a second has `per_second`.
+    /// Reads a time in units; `per_second` of them make a second.
     pub(super) fn time(&mut self, field: &str, per_second: f64) -> Result<f64, Damage> {
         Ok(self.number_up_to(field, LATEST)? / per_second)
     }
@@ -85,7 +85,7 @@ impl<'a> Fields<'a> {
         word.parse().map_err(|_| unreadable(field, &format!("`{}` is not a count", short(word))))
     }
 
-    /// A pose from three fields, whose units go this many times into a metre and a radian.
+    /// Reads a pose from three fields, given the number of their units in a metre and in a radian.
     pub(super) fn pose(
         &mut self,
         fields: [&str; 3],
@@ -97,7 +97,7 @@ impl<'a> Fields<'a> {
         Ok(Isometry2::new(place, self.number(theta)? / per_radian))
     }
 
-    /// A number of ranges, in units of which a metre has `per_metre`; NaN and infinity, too.
+    /// Reads `count` ranges in units; `per_metre` of them make a metre. NaN and infinity are allowed.
     pub(super) fn ranges(&mut self, count: usize, per_metre: f64) -> Result<Vec<Written>, Damage> {
         let range = |i, fields: &mut Self| {
             let word = fields.words.get(fields.next).copied().unwrap_or_default();
@@ -107,13 +107,13 @@ impl<'a> Fields<'a> {
         (0..count.min(self.left())).map(|i| range(i, self)).collect()
     }
 
-    /// Passes over some words.
+    /// Skips some words.
     pub(super) fn skip(&mut self, count: usize) {
         self.next = self.next.saturating_add(count).min(self.words.len());
     }
 }
 
-/// What one more in the last decimal place of a number is worth: 0.01 for `10.70`.
+/// Returns the worth of one unit in the last decimal place of a number: 0.01 for `10.70`.
 fn last_place(word: &str) -> f64 {
     if word.contains(['e', 'E', 'n', 'N']) {
         return 0.0;
@@ -126,7 +126,7 @@ fn unreadable(field: impl Display, fault: &str) -> Damage {
     Damage::new(SkipReason::Unreadable, format!("{field}: {fault}"))
 }
 
-/// A word, or its beginning.
+/// Returns a word, or its beginning.
 fn short(word: &str) -> String {
     word.chars().take(20).collect()
 }

@@ -14,15 +14,15 @@ use std::path::{Path, PathBuf};
 
 /// Millimetres in a metre.
 const PER_METRE: f64 = 1e3;
-/// The laser stands so far before the robot's centre \[m\], which was estimated.
+/// The distance of the laser in front of the robot's centre \[m\], an estimate.
 const LASER_AHEAD: f64 = 0.12;
-/// What the laser can measure \[m\].
+/// The shortest and the longest range of the laser \[m\].
 const LASER_RANGES: (f64, f64) = (0.3, 81.0);
 
 /// The frames of `sonar.txt` or of `laser.txt`.
 pub(super) struct FolderLog {
     lines: Lines,
-    /// The sonars as they are configured, if those are wanted.
+    /// The sonars as configured, if sonars are wanted.
     sonar: Option<SonarRing>,
     device: Device<usize>,
     ties: Ties,
@@ -53,12 +53,12 @@ impl FolderLog {
         self.lines.path()
     }
 
-    /// Whether its clock is too coarse to tell its lines apart.
+    /// Returns whether its clock is too coarse to tell its lines apart.
     pub(super) fn is_coarse(&self) -> bool {
         self.ties.is_coarse()
     }
 
-    /// The next good frame, which says nothing of poses.
+    /// Returns the next good frame, without a pose.
     pub(super) fn next(&mut self, account: &mut Account) -> Result<Option<Measured>, LogError> {
         while self.lines.advance()? {
             account.skipped.add_frame();
@@ -99,7 +99,7 @@ impl FolderLog {
     }
 }
 
-/// The odometry of a folder.
+/// Returns the odometry of a folder.
 pub(super) fn odometry(folder: &Path) -> Result<PoseFile, LogError> {
     PoseFile::open(&file_in(folder, "od.txt")?, Units::ODOMETRY)
 }

@@ -1,23 +1,22 @@
-//! The way of a robot from frame to frame of a log: what it drove, and what nobody knows.
+//! The way of a robot from frame to frame of a log: driven legs, and jumps.
 
 use crate::{LogFrame, Passed};
 use nalgebra::{Isometry2, Point2, Vector2};
 
-/// A path is followed in steps of at least this \[m\]: less is the trembling of a robot that
-/// stands.
+/// The shortest step of a path \[m\]: shorter ones are the trembling of a standing robot.
 const SHORTEST_STEP: f64 = 0.01;
-/// A step up to this \[m\] is driven, however long it took.
+/// A step up to this length counts as driven, however long it took \[m\].
 const SHORT_STEP: f64 = 1.0;
-/// Of a step longer than this \[m\] nobody knows the way.
+/// The way of a step longer than this is unknown \[m\].
 const LONGEST_STEP: f64 = 5.0;
-/// No robot of ours is faster \[m/s\]: it was not driven, but its pose was corrected.
+/// The largest speed of a robot \[m/s\]; in a faster step the pose was corrected, not driven.
 const FASTEST: f64 = 2.0;
-/// In a step longer than [`SHORT_STEP`] the body was on the straight line if the robot looked
-/// along it at both ends, up to this \[rad\].
+/// The largest angle between the robot's heading, at both ends, and a step longer than
+/// [`SHORT_STEP`] in which the body kept to the straight line \[rad\].
 const ASTRAY: f64 = 0.5;
-/// Corrected poses may differ so far from the odometry between them: by this \[m\] …
+/// Corrected poses may differ from the odometry between them by this \[m\] …
 const CORRECTION: f64 = 0.5;
-/// … and by this share of its way.
+/// … plus this share of the odometry's way.
 const DRIFT: f64 = 0.3;
 /// Poses this near to each other \[m, rad\] are the same.
 const SAME: f64 = 1e-6;
@@ -25,29 +24,29 @@ const SAME: f64 = 1e-6;
 /// A step of the robot.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Leg {
-    /// Where it begins \[m\].
+    /// Start \[m\].
     pub from: Point2<f64>,
-    /// Where it ends \[m\].
+    /// End \[m\].
     pub to: Point2<f64>,
-    /// Nobody knows the way: it was not driven.
+    /// Whether the way is unknown: the step was not driven.
     pub jump: bool,
-    /// The body was all the way between.
+    /// Whether the body swept the straight line.
     pub swept: bool,
 }
 
 /// Follows the frames of a log.
 #[derive(Debug, Default)]
 pub struct Follower {
-    /// The last frame: where the robot was, and where its odometry saw it.
+    /// The last frame: the robot's pose, and its pose by odometry.
     last: Option<[Isometry2<f64>; 2]>,
-    /// Whether the odometry ever moved: one that does not is none.
+    /// Whether the odometry ever moved; an odometry that never moves is ignored.
     odometry_moves: bool,
     /// The end of the last leg.
     at: Option<Isometry2<f64>>,
 }
 
 impl Follower {
-    /// The legs to the next frame.
+    /// Returns the legs to the next frame.
     pub fn follow(&mut self, frame: &LogFrame) -> Vec<Leg> {
         let pose = frame.scan.pose;
         let odometry = frame.way.last().map_or(pose, |passed| passed.pose);
@@ -60,7 +59,7 @@ impl Follower {
         corners.into_iter().filter_map(|corner| self.step(corner)).collect()
     }
 
-    /// The legs after the last frame.
+    /// Returns the legs after the last frame.
     pub fn rest(&mut self, way: &[Passed]) -> Vec<Leg> {
         let Some([pose, odometry]) = self.last else { return Vec::new() };
         let world_from_odometry = if is_same(&pose, &odometry) {
@@ -73,7 +72,7 @@ impl Follower {
         way.iter().filter_map(|passed| self.step(corner(passed))).collect()
     }
 
-    /// Where the robot passed, in the frame of the poses.
+    /// Returns the poses that the robot passed, in the frame of the poses.
     fn corners(
         &mut self,
         [from, from_odometry]: [Isometry2<f64>; 2],
@@ -94,12 +93,12 @@ impl Follower {
         if !self.odometry_moves || jumps {
             return straight(seconds);
         }
-        // The odometry's way, laid to where the robot was, and bent to where it is.
+        // The odometry's way, placed at the robot's old pose, and bent to its new one.
         let world_from_odometry = from * from_odometry.inverse();
         let laid = world_from_odometry * to_odometry;
         let off = to.translation.vector - laid.translation.vector;
         if off.norm() > CORRECTION + DRIFT * length {
-            // The odometry knows of no such way.
+            // The odometry contradicts the poses.
             return straight(0.0);
         }
         let mut passed_length = 0.0;
@@ -116,7 +115,7 @@ impl Follower {
         corners
     }
 
-    /// The leg to a corner, if it is far enough.
+    /// Returns the leg to a corner, if the corner is far enough.
     fn step(&mut self, corner: Passed) -> Option<Leg> {
         let Passed { pose, seconds } = corner;
         let first = self.at.is_none();
@@ -125,7 +124,7 @@ impl Follower {
         if !first && length < SHORTEST_STEP {
             return None;
         }
-        // Since the last corner, which is nearer to the last leg than a step.
+        // The time since the last corner; that corner is nearer to the last leg than a step.
         let jump = !is_drivable(length, seconds);
         let swept = length <= SHORT_STEP || (!jump && looks_along(&from, &pose));
         self.at = Some(pose);
@@ -134,7 +133,7 @@ impl Follower {
     }
 }
 
-/// Whether a robot can have driven so far in a time, which is 0 if that is not known.
+/// Returns whether a robot can drive a length in a time; the time is 0 if it is not known.
 fn is_drivable(length: f64, seconds: f64) -> bool {
     length <= SHORT_STEP || (length <= LONGEST_STEP && length <= FASTEST * seconds)
 }
@@ -147,7 +146,7 @@ fn is_same(a: &Isometry2<f64>, b: &Isometry2<f64>) -> bool {
     distance(a, b) <= SAME && a.rotation.angle_to(&b.rotation).abs() <= SAME
 }
 
-/// Whether the robot looks along the line between two poses, or back, at both of its ends.
+/// Returns whether the robot faces along the line between two poses, or back, at both ends.
 fn looks_along(from: &Isometry2<f64>, to: &Isometry2<f64>) -> bool {
     let line = (to.translation.vector - from.translation.vector).normalize();
     [from, to]
@@ -165,7 +164,7 @@ mod tests {
         Isometry2::translation(x, y)
     }
 
-    /// A frame at a pose; the odometry passed some places, each half a second after the last.
+    /// Returns a frame at a pose; the odometry passed some places, each half a second after the last.
     fn frame(pose: Isometry2<f64>, way: &[Isometry2<f64>], seconds: f64) -> LogFrame {
         let ring = Arc::new(SonarRing::new(SonarRing::b21r().beams()[..1].to_vec()).unwrap());
         let scan = Scan { pose, time: 0.0, ranges: vec![Range::Missing] };
@@ -173,7 +172,7 @@ mod tests {
         LogFrame { scan, ring, way, line: 1 }
     }
 
-    /// Driven length \[m\], jumps, and how many legs were swept.
+    /// Returns the driven length \[m\], the number of jumps, and the number of swept legs.
     fn follow(frames: &[LogFrame]) -> (f64, usize, usize) {
         let mut follower = Follower::default();
         let legs: Vec<Leg> = frames.iter().flat_map(|frame| follower.follow(frame)).collect();
@@ -196,7 +195,7 @@ mod tests {
         check(&keyframes(2.1), (2.1, 0, 3));
         check(&keyframes(0.1), (0.0, 2, 1));
         check(&keyframes(0.0), (0.0, 2, 1));
-        // It stood for long, and did not drive then.
+        // The robot stood for a long time, and did not drive then.
         let stood = [0.0, 0.0, 0.0, 4.0].map(|x| frame(at(x, 0.0), &[at(x, 0.0)], 1.0));
         check(&stood, (0.0, 1, 1));
         let far = [0.0, 6.0].map(|x| frame(at(x, 0.0), &[at(x, 0.0)], 60.0));
@@ -211,7 +210,7 @@ mod tests {
 
     #[test]
     fn the_way_is_that_of_the_odometry() {
-        // Round a corner.
+        // The way leads round a corner.
         let round = [at(2.0, 0.0), at(2.0, 1.0), at(2.0, 2.0)];
         let frames = [frame(at(0.0, 0.0), &[at(0.0, 0.0)], 0.0), frame(round[2], &round, 2.0)];
         check(&frames, (4.0, 0, 4));
@@ -232,10 +231,10 @@ mod tests {
             frame(at(7.0, 6.5), &way(0.6), 2.0),
         ];
         check(&frames, (0.5, 1, 2));
-        // An odometry that never moves is none.
+        // An odometry that never moves is ignored.
         let frames = [frame(at(5.0, 5.0), &way(0.0), 1.0), frame(at(6.5, 5.0), &way(0.0), 1.0)];
         check(&frames, (1.5, 0, 2));
-        // An odometry that was reset.
+        // The odometry was reset.
         let reset = [at(4.0, 0.0), at(0.0, 0.0), at(0.1, 0.0)];
         let frames = [frame(at(3.9, 0.0), &way(3.9), 1.0), frame(at(0.1, 0.0), &reset, 0.1)];
         check(&frames, (0.2, 1, 3));

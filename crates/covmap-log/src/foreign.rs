@@ -1,4 +1,4 @@
-//! Files that people take for logs: what they are, and what reads them.
+//! Files that users take for logs: their kinds, and the programs that read them.
 
 use super::carmen_line::TAGS;
 use covmap_io::{Signature, signature};
@@ -22,7 +22,7 @@ const JSON: &str = "a JSON file, and no log; `log` makes one of the folder that 
 const RUN: &str = "the folder of a run; `log` makes a log of it";
 const MAP: &str = "the folder of a map that `map` or `explore` wrote";
 
-/// How names end, where the contents say nothing.
+/// The endings of names, for contents that say nothing.
 const ENDINGS: [(&str, &str); 12] = [
     ("bag", ROSBAG),
     ("db3", DB3),
@@ -38,7 +38,7 @@ const ENDINGS: [(&str, &str); 12] = [
     ("zip", ARCHIVE),
 ];
 
-/// What a file is that is no log, by how it begins.
+/// Returns the kind of a file that is not a log, by its beginning.
 pub(super) fn kind(head: &[u8]) -> Option<&'static str> {
     match signature(head) {
         Some(Signature::RosBag) => Some(ROSBAG),
@@ -54,7 +54,7 @@ pub(super) fn kind(head: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// What a file is that has no lines of a log, by its name.
+/// Returns the kind of a file without any line of a log, by its name.
 pub(super) fn named<'a>(
     path: &Path,
     mut lines: impl Iterator<Item = &'a [u8]>,
@@ -64,7 +64,7 @@ pub(super) fn named<'a>(
     (!lines.any(is_of_a_log)).then_some(kind)
 }
 
-/// What a folder is that holds no log.
+/// Returns the kind of a folder that holds no log.
 pub(super) fn folder_kind(folder: &Path) -> Option<&'static str> {
     let has = |name: &str| folder.join(name).exists();
     if has("metadata.yaml") {
@@ -76,7 +76,7 @@ pub(super) fn folder_kind(folder: &Path) -> Option<&'static str> {
     has("belief.bin").then_some(MAP)
 }
 
-/// Whether a line is one that logs of CARMEN have, by its first word.
+/// Returns whether the first word of a line is a tag of CARMEN's logs.
 pub fn is_of_a_log(line: &[u8]) -> bool {
     let word = line.split(u8::is_ascii_whitespace).find(|word| !word.is_empty());
     word.is_some_and(|word| TAGS.iter().any(|tag| tag.as_bytes() == word))

@@ -1,7 +1,7 @@
 //! Logs of real robots, as scans with poses, one after the other.
 //!
-//! [`LogReader`] reads CARMEN's text logs and folders of three files, and [`CarmenWriter`]
-//! writes the former. However long a log is, only a few of its frames are held at a time.
+//! [`LogReader`] reads CARMEN's text logs and folders of three files, and [`CarmenWriter`] writes
+//! the former. The reader holds only a few frames at a time, however long a log is.
 
 mod account;
 mod carmen;

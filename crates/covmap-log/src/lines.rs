@@ -1,4 +1,4 @@
-//! The lines of a text file, plain or packed, and never too much of them.
+//! The lines of a text file, plain or packed, within bounded memory.
 
 use super::limits::{LONGEST_LINE, MOST_RATIO};
 use super::{LogError, foreign};
@@ -8,9 +8,9 @@ use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// So much may always be unpacked \[bytes\].
+/// The number of bytes that a packed file may always unpack to.
 const ALWAYS_UNPACKED: u64 = 16 << 20;
-/// So much of the beginning can be looked at before the first line is read \[bytes\].
+/// The number of bytes at the beginning that are available before the first line is read.
 const HEAD: u64 = 1 << 20;
 
 type Input = Box<dyn Read + Send>;
@@ -26,7 +26,7 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// The lines of a file.
+    /// Returns the lines of a file.
     pub(super) fn open(path: &Path) -> Result<Self, LogError> {
         let refused = |source: io::Error| match source.kind() {
             io::ErrorKind::Other => LogError::NotAFile { path: path.to_owned() },
@@ -35,7 +35,7 @@ impl Lines {
         Self::new(path, open_file(path).map_err(refused)?)
     }
 
-    /// The lines of `input`, which `path` names in errors.
+    /// Returns the lines of `input`, which `path` names in errors.
     pub(super) fn new(
         path: &Path,
         mut input: impl Read + Send + 'static,
@@ -52,7 +52,7 @@ impl Lines {
             Box::new(whole)
         };
         let mut head = Vec::new();
-        // What was read before an error is read again before it.
+        // The bytes before an error are read again before the error is returned.
         let error = rest.by_ref().take(HEAD).read_to_end(&mut head).err();
         let head: Arc<[u8]> = head.into();
         if let Some(kind) = foreign::kind(&head) {
@@ -63,7 +63,7 @@ impl Lines {
         Ok(Self { path, head, input, packed, line: 0, bytes: Vec::new() })
     }
 
-    /// The first lines, without one that may go on.
+    /// Returns the first lines, without a last one that may continue.
     pub(super) fn head(&self) -> impl Iterator<Item = &[u8]> {
         let whole = if self.head.len() as u64 == HEAD {
             self.head.iter().rposition(|byte| *byte == b'\n').unwrap_or(0)
@@ -73,7 +73,7 @@ impl Lines {
         self.head[..whole].split(|byte| *byte == b'\n')
     }
 
-    /// Gives back the memory of what [`Lines::head`] looks at.
+    /// Frees the memory behind [`Lines::head`].
     pub(super) fn forget_head(&mut self) {
         self.head = Arc::new([]);
     }
@@ -82,7 +82,7 @@ impl Lines {
         &self.path
     }
 
-    /// The number of the last line, counted from 1.
+    /// Returns the number of the last line, counted from 1.
     pub(super) fn line(&self) -> usize {
         self.line
     }
@@ -100,7 +100,7 @@ impl Lines {
         }
     }
 
-    /// The text of the line; what is no UTF-8 in it is replaced.
+    /// Returns the text of the line; bytes that are not UTF-8 are replaced.
     pub(super) fn text(&self) -> std::borrow::Cow<'_, str> {
         String::from_utf8_lossy(&self.bytes)
     }
@@ -128,7 +128,7 @@ impl Lines {
     }
 }
 
-/// What was looked at already, and what follows it.
+/// The beginning that was read ahead, and the rest.
 struct Begun {
     head: Cursor<Arc<[u8]>>,
     error: Option<io::Error>,
@@ -158,7 +158,7 @@ impl<R: Read> Read for Counted<R> {
     }
 }
 
-/// Unpacks, but not without end.
+/// Unpacks up to a limit.
 struct Unpacker<R> {
     decoder: MultiGzDecoder<Counted<R>>,
     unpacked: u64,

@@ -1,27 +1,27 @@
-//! What is read of a log.
+//! The options of a reader.
 
 use covmap_sonar::SonarRing;
 use std::path::PathBuf;
 
-/// Which sensors of a log are read.
+/// The kind of sensors that are read from a log.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sensor {
-    /// `SONAR`, or `sonar.txt`.
+    /// Sonars: `SONAR`, or `sonar.txt`.
     Sonar,
-    /// `FLASER`, `RLASER`, `ROBOTLASER1`–`2` or `RAWLASER1`–`5`, or `laser.txt`: rings of beams
-    /// without width.
+    /// Lasers: `FLASER`, `RLASER`, `ROBOTLASER1`–`2` or `RAWLASER1`–`5`, or `laser.txt`: rings of
+    /// beams without width.
     Laser,
 }
 
-/// What is read of a log, and what it does not say itself.
+/// The wanted parts of a log, and facts that the log does not state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogOptions {
-    /// Which sensors.
+    /// The kind of sensors.
     pub sensor: Sensor,
-    /// The sonars as they are configured. What the log records goes before; so this is the
-    /// ring of `sonar.txt`, and of `SONAR` the shortest and longest ranges alone.
+    /// The sonars as configured. The log's own records take precedence: the ring serves `sonar.txt`
+    /// in full, and `SONAR` only with its shortest and longest ranges.
     pub ring: SonarRing,
-    /// Poses to be used instead of the log's: a file with `t_ms x_m y_m theta_rad` in each
-    /// line, in the order of time.
+    /// Poses that replace the log's: a file with `t_ms x_m y_m theta_rad` in each line, in the
+    /// order of time.
     pub poses: Option<PathBuf>,
 }

@@ -1,4 +1,4 @@
-//! What the lines `PARAM` of a log say of its sensors, and what follows from it.
+//! The lines `PARAM` of a log, and the geometry that follows from them.
 
 use super::carmen_line::Described;
 use super::fields::Fields;
@@ -8,13 +8,13 @@ use nalgebra::{Isometry2, Vector2};
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 
-/// A laser whose log does not state its longest range sees so far \[m\].
+/// The longest range of a laser whose log does not state it \[m\].
 const LASER_MAX_RANGE: f64 = 80.0;
-/// A pose of the laser farther than this from the robot's is a corrected one \[m\].
+/// A laser's pose farther than this from the robot's is a corrected pose \[m\].
 const FARTHEST_MOUNT: f64 = 1.0;
-/// Not more parameters than this are remembered.
+/// The largest number of parameters that are remembered.
 const MOST: usize = 4096;
-/// The names of what matters end so.
+/// The endings of the names that matter.
 const ENDINGS: [&str; 9] = [
     "_max",
     "_fov",
@@ -27,30 +27,30 @@ const ENDINGS: [&str; 9] = [
     "_min_range",
 ];
 
-/// A number, and where it was found.
+/// A number, and its source.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Stated {
     pub(super) value: f64,
     pub(super) source: String,
 }
 
-/// Numbers that the log states.
+/// The numbers that a log states.
 #[derive(Debug, Default)]
 pub(super) struct Parameters {
     values: BTreeMap<String, f64>,
-    /// What the beginning of the log states, where the lines so far do not.
+    /// Values from the beginning of the log, used until its lines are reached.
     ahead: BTreeMap<String, f64>,
 }
 
 impl Parameters {
-    /// `PARAM name value ipc_timestamp host logger_timestamp`
+    /// Reads `PARAM name value ipc_timestamp host logger_timestamp`.
     pub(super) fn read(&mut self, fields: &mut Fields<'_>) -> Result<(), Damage> {
         insert(&mut self.values, fields)
     }
 
-    /// Takes in a line of the beginning, which is read again in its turn.
+    /// Reads a line of the beginning, ahead of its turn.
     pub(super) fn look_ahead(&mut self, fields: &mut Fields<'_>) {
-        // What is wrong with it is said then.
+        // A fault is reported when the line has its turn.
         let _ = insert(&mut self.ahead, fields);
     }
 
@@ -63,8 +63,9 @@ impl Parameters {
         names.into_iter().find_map(|name| self.get(&name))
     }
 
-    /// The longest range of sonars. The smaller one, if there are two: from there on, no reading
-    /// tells an echo from none.
+    /// Returns the longest range of sonars.
+    ///
+    /// Of two, the smaller one counts: from there on, no reading tells an echo from none.
     pub(super) fn sonar_max_range(&self) -> Option<Stated> {
         let names = [carmen_writer::MAX_RANGE, "robot_max_sonar", "robot_sonar_max"];
         smallest(names.into_iter().filter_map(|name| self.get(name)))
@@ -74,7 +75,7 @@ impl Parameters {
         [carmen_writer::MIN_RANGE, "robot_min_sonar"].into_iter().find_map(|name| self.get(name))
     }
 
-    /// The longest range of a laser, as its line or a parameter states it: the smallest.
+    /// Returns the longest range of a laser: the smallest that its line or a parameter states.
     pub(super) fn laser_max_range(&self, laser: Laser, described: Option<&Described>) -> Stated {
         let names = laser
             .words()
@@ -87,7 +88,7 @@ impl Parameters {
         smallest(all.chain(line)).unwrap_or_else(unstated)
     }
 
-    /// The angle of the first beam, and the step \[rad\].
+    /// Returns the angle of the first beam, and the step \[rad\].
     pub(super) fn angles(
         &self,
         laser: Laser,
@@ -114,13 +115,13 @@ impl Parameters {
         })
     }
 
-    /// `robot_from_laser`: as the parameters say it, or else as the poses of one line do.
+    /// Returns `robot_from_laser`: from the parameters, or else from the poses of one line.
     pub(super) fn mount(
         &self,
         laser: Laser,
         poses: Option<&[Isometry2<f64>; 2]>,
     ) -> (Isometry2<f64>, String) {
-        // The rear laser looks back.
+        // The rear laser faces back.
         let turned = if laser.number == 2 { PI } else { 0.0 };
         let stated =
             |what: &str| self.first(laser.words().iter().map(|word| format!("robot_{word}{what}")));
@@ -162,7 +163,7 @@ impl Stated {
         Self { value: self.value.to_radians(), ..self }
     }
 
-    /// Of a field of view, which is written in radians or in degrees.
+    /// Converts a field of view, written in radians or in degrees.
     fn in_radians(self) -> Self {
         if self.value > TAU + 1e-3 { self.degrees_in_radians() } else { self }
     }
@@ -171,14 +172,14 @@ impl Stated {
 /// A laser of the robot.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Laser {
-    /// 1 looks ahead, 2 back.
+    /// The laser's number: 1 faces ahead, 2 back.
     pub(super) number: u8,
-    /// The tag of its lines.
+    /// The tag of the laser's lines.
     pub(super) tag: &'static str,
 }
 
 impl Laser {
-    /// The words by which parameters name it.
+    /// Returns the words by which parameters name the laser.
     fn words(self) -> &'static [&'static str] {
         match self.number {
             1 => &["front_laser", "frontlaser", "laser1"],
@@ -194,8 +195,9 @@ impl Laser {
     }
 }
 
-/// Where the first of `count` beams points, and the step from each to the next \[rad\]: as their
-/// field of view says it, or as is usual for their number.
+/// Returns the angle of the first of `count` beams, and the step between beams \[rad\].
+///
+/// Both come from the field of view or the step, or from the usual ones for the number of beams.
 fn spread(
     count: usize,
     start: Option<f64>,
@@ -209,7 +211,7 @@ fn spread(
             Stated { source, ..step }
         }
         (Some(field), _) => {
-            // A half-open field has the step that is the rounder one.
+            // A half-open field has the rounder of the two steps.
             let round =
                 |step: f64| (step.to_degrees() * 8.0 - (step.to_degrees() * 8.0).round()).abs();
             let [closed, open] = [field.value / gaps, field.value / beams];
@@ -222,7 +224,7 @@ fn spread(
             Stated { value: usual_step(count)?.to_radians(), source }
         }
     };
-    // An even number of beams leaves the last one out.
+    // An even number of beams leaves out the last one.
     let width = field.map_or_else(
         || step.value * if count.is_multiple_of(2) { beams } else { gaps },
         |field| field.value,
@@ -235,7 +237,7 @@ fn both(a: &str, b: &str) -> String {
     if a == b { a.to_owned() } else { format!("{a} and {b}") }
 }
 
-/// The step of lasers with a number of beams \[degrees\].
+/// Returns the step of lasers with a number of beams \[degrees\].
 fn usual_step(count: usize) -> Option<f64> {
     match count {
         101 | 180 | 181 => Some(1.0),
@@ -259,7 +261,7 @@ mod tests {
         parameters
     }
 
-    /// The first angle and the step \[degrees\].
+    /// Checks the first angle and the step \[degrees\].
     #[track_caller]
     fn check_angles(lines: &[&str], count: usize, expected: (f64, f64)) {
         let (start, step) = parameters(lines).angles(FRONT, None, count).unwrap();
@@ -288,7 +290,7 @@ mod tests {
         check_angles(&["laser_front_laser_fov 180 0 h 0"], 360, (-90.0, 0.5));
         check_angles(&["laser_front_laser_fov 3.1415927 0 h 0"], 181, (-90.0, 1.0));
         check_angles(&["laser_front_laser_resolution 0.5 0 h 0"], 181, (-45.0, 0.5));
-        // They contradict each other: the field of view wins.
+        // The two contradict each other: the field of view wins.
         let wrong = "laser_front_laser_resolution 0.25 0 h 0";
         check_angles(&["laser_front_laser_fov 180 0 h 0", wrong], 361, (-90.0, 0.5));
     }

@@ -9,7 +9,7 @@ use super::{LogError, SkipReason, Skipped};
 use std::f64::consts::PI;
 use std::path::{Path, PathBuf};
 
-/// Where a clock started anew, this many runs of time around the last are looked through.
+/// The number of runs of time, before and after the last used one, that a search covers.
 const RUNS_AROUND: usize = 8;
 
 /// The units of a file of poses.
@@ -20,20 +20,20 @@ pub(super) struct Units {
 }
 
 impl Units {
-    /// Of `od.txt`: millimetres and tenths of a degree.
+    /// The units of `od.txt`: millimetres and tenths of a degree.
     pub(super) const ODOMETRY: Self = Self { per_metre: 1e3, per_radian: 1800.0 / PI };
-    /// Of corrected poses: metres and radians.
+    /// The units of corrected poses: metres and radians.
     pub(super) const CORRECTED: Self = Self { per_metre: 1.0, per_radian: 1.0 };
 }
 
 /// A file with a time in milliseconds and a pose in each line.
 pub(super) struct PoseFile {
     path: PathBuf,
-    /// Its lines, until they are read.
+    /// The file's lines, until they are read.
     lines: Option<Lines>,
     units: Units,
     fixes: Vec<Fix>,
-    /// Where runs of time that does not go back begin.
+    /// The starts of the runs in which time does not go back.
     runs: Vec<usize>,
     /// The run that was used last.
     run: usize,
@@ -55,22 +55,22 @@ impl PoseFile {
         &self.path
     }
 
-    /// How often its clock starts anew.
+    /// Returns the number of times that the file's clock starts anew.
     pub(super) fn restarts(&self) -> usize {
         self.runs.len().saturating_sub(1)
     }
 
-    /// Whether its clock is too coarse to tell its lines apart.
+    /// Returns whether the file's clock is too coarse to tell its lines apart.
     pub(super) fn is_coarse(&self) -> bool {
         self.ties.is_coarse()
     }
 
-    /// The fixes from one place to another.
+    /// Returns the fixes from one place to another.
     pub(super) fn part(&self, first: usize, end: usize) -> &[Fix] {
         self.fixes.get(first..end).unwrap_or_default()
     }
 
-    /// Reads all of it, if that is not done yet.
+    /// Reads the whole file, unless that is done.
     pub(super) fn read(&mut self, skipped: &mut Skipped) -> Result<(), LogError> {
         let Some(mut lines) = self.lines.take() else { return Ok(()) };
         while lines.advance()? {
@@ -108,7 +108,7 @@ impl PoseFile {
         self.fixes.insert(at, fix);
     }
 
-    /// The pose at a time \[s\], if it is known.
+    /// Returns the pose at a time \[s\], if known.
     pub(super) fn at(&mut self, time: f64) -> Option<Place> {
         let (later, earlier) = (self.run..self.runs.len(), (0..self.run).rev());
         let around = later.take(RUNS_AROUND).chain(earlier.take(RUNS_AROUND));
@@ -134,7 +134,7 @@ impl PoseFile {
         Some((pose?, first + after))
     }
 
-    /// The pose in a line.
+    /// Returns the pose in a line.
     pub(super) fn at_line(&self, line: usize) -> Option<Place> {
         let found = self.fixes.binary_search_by_key(&line, |fix| fix.line).ok()?;
         Some((self.fixes[found].pose, found))

@@ -9,59 +9,59 @@ use nalgebra::Isometry2;
 use std::collections::VecDeque;
 use std::path::Path;
 
-/// The most frames that wait for the odometry after them.
+/// The largest number of frames that wait for the odometry after them.
 const MOST_WAITING: usize = 256;
-/// The number of last frames among which those with poses of their own are put in the order of time.
+/// The number of last frames among which those with poses of their own are sorted by time.
 const SORTED: usize = 8;
-/// Fewer frames with another clock than this are some for which the clock leapt.
+/// Fewer frames than this with another clock than the fixes count as leaps of the clock.
 const FEWEST_APART: usize = 4;
-/// A frame is not so late \[s\]: the clock starts anew with it.
+/// The largest delay of a frame \[s\]; a later frame means that the clock starts anew.
 const LATEST_FRAME: f64 = 60.0;
 
 enum State {
     Open,
-    /// The number of fixes before it.
+    /// The number of fixes before the frame.
     Known(usize),
     Lost(Damage),
 }
 
 struct Waiting {
     frame: Measured,
-    /// Its pose by odometry, if it has a pose of its own.
+    /// The frame's pose by odometry, if it has a pose of its own.
     odometry: Option<Isometry2<f64>>,
-    /// The order of lines placed it, and not its time.
+    /// Whether the order of lines placed the frame, not its time.
     by_order: bool,
-    /// It has another clock than the fix before it.
+    /// Whether the frame has another clock than the fix before it.
     apart: bool,
     state: State,
 }
 
-/// The frames of a log that wait, in the order of their lines.
+/// The waiting frames of a log, in the order of their lines.
 #[derive(Default)]
 pub(super) struct Queue {
     track: Track,
     waiting: VecDeque<Waiting>,
     ties: Ties,
-    /// How many frames there were, and how many of them with another clock than the fixes.
+    /// The number of frames, and the number of those with another clock than the fixes.
     frames: usize,
     apart: usize,
     way: Way,
-    /// Time and pose of the last frame that was taken out.
+    /// Time and pose of the last frame taken out.
     last: Option<(f64, Isometry2<f64>)>,
 }
 
 impl Queue {
-    /// How often the clock of the poses started anew.
+    /// Returns the number of times that the clock of the poses started anew.
     pub(super) fn restarts(&self) -> usize {
         self.track.restarts
     }
 
-    /// Where the robot passed after the last frame.
+    /// Returns the poses that the robot passed after the last frame.
     pub(super) fn rest(&mut self) -> Vec<Passed> {
         self.way.rest()
     }
 
-    /// Adds where the robot was. The line before it whose clock leapt is said.
+    /// Adds a pose of the robot, and returns the line before it if that line's clock leapt.
     pub(super) fn push_fix(&mut self, fix: Fix) -> Option<(usize, Damage)> {
         let wrong = self.track.push(fix);
         if let Some(wrong) = &wrong {
@@ -85,7 +85,7 @@ impl Queue {
         wrong.map(|wrong| (wrong.line, leapt(wrong.stamp.time)))
     }
 
-    /// Adds a frame whose pose is that of the fixes around it.
+    /// Adds a frame that takes its pose from the fixes around it.
     pub(super) fn push(&mut self, mut frame: Measured) {
         frame.tied = self.ties.add(frame.stamp.time);
         let apart = self.track.is_apart(&frame.stamp);
@@ -95,7 +95,8 @@ impl Queue {
         self.waiting.push_back(Waiting { frame, odometry, by_order, apart, state });
     }
 
-    /// Whether times cannot place frames: they are too coarse, or of different clocks.
+    /// Returns whether times cannot place frames, because they are too coarse, or of different
+    /// clocks.
     fn needs_order(&self) -> bool {
         let different = self.apart >= FEWEST_APART && 4 * self.apart >= self.frames;
         different || self.ties.is_coarse() || self.track.ties.is_coarse()
@@ -111,7 +112,7 @@ impl Queue {
         self.waiting.insert(at, Waiting { frame, odometry, by_order, apart, state });
     }
 
-    /// Where a frame of a time belongs among the last ones.
+    /// Returns the place of a time among the last frames.
     fn position(&self, time: f64) -> usize {
         let times = |at: usize| self.waiting.get(at).map(|one| one.frame.stamp.time);
         let end = self.waiting.len();
@@ -124,7 +125,7 @@ impl Queue {
         if before.is_none_or(|before| before <= time) { at } else { end }
     }
 
-    /// The first frame, if its pose is known by now.
+    /// Returns the first frame, if its pose is known.
     pub(super) fn pop(
         &mut self,
         ended: bool,
@@ -169,7 +170,7 @@ impl Queue {
     }
 }
 
-/// Where a frame is by the fixes so far, and whether the order of lines says so.
+/// Returns the place of a frame by the fixes so far, and whether the order of lines gave it.
 fn place(
     track: &Track,
     needs_order: bool,

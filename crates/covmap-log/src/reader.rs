@@ -1,4 +1,4 @@
-//! The one way to read any log.
+//! The reader of logs of any kind.
 
 use super::carmen::CarmenLog;
 use super::device::Measured;
@@ -17,15 +17,15 @@ use std::sync::Arc;
 /// A scan of a log, with the ring that measured it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LogFrame {
-    /// The scan. Its pose is the robot's, also if the ring is a laser on it.
+    /// The scan. Its pose is the robot's, even if the ring is a laser on the robot.
     pub scan: Scan,
-    /// The ring. All frames of a log have the same, unless it has several lasers, or states
-    /// other ranges on its way.
+    /// The ring. All frames of a log share one, unless the log has several lasers, or its stated
+    /// ranges change.
     pub ring: Arc<SonarRing>,
-    /// Where the odometry passed since the frame before; the last is where it saw the robot at
-    /// the scan.
+    /// The poses that the odometry passed since the frame before; the last is the robot's pose by
+    /// odometry at the scan.
     pub way: Vec<Passed>,
-    /// The line of the log that has it, counted from 1.
+    /// The line of the log with the scan, counted from 1.
     pub line: usize,
 }
 
@@ -36,25 +36,25 @@ enum Source {
 
 /// The frames of a log, one after the other, in the order of its lines.
 ///
-/// A frame that is wrong is passed over and counted, [`LogReader::skipped`]. An error is the
-/// end: nothing comes after it. A log in which not one frame is good ends with
-/// [`LogError::NoScans`].
+/// The reader passes over a wrong frame and counts it, [`LogReader::skipped`]. An error is the end:
+/// nothing comes after it. A log without one good frame ends with [`LogError::NoScans`].
 ///
 /// A log is one of
-/// - a text log of CARMEN, with lines `PARAM`, `ODOM`, `TRUEPOS`, `SONAR`, and those of
-///   [`Sensor::Laser`]; others are passed over, as are comments after `#`. It may be packed with
-///   gzip, whatever its name. `SONAR` and `RAWLASER` have no pose: it is taken between the two
-///   `ODOM` around their time, if they are no more than 2 s apart. Where times are too coarse to
-///   tell lines apart, the order of lines and the logger's time place a frame. A clock may start
-///   anew; a line for which it leapt is passed over. Where `TRUEPOS` is (nearly) as frequent as
-///   `ODOM`, it has all poses;
-/// - a folder with `od.txt` (`t x y theta`: ms, mm, mm, 1/10°), `sonar.txt` (`t s0 s1 …`: ms,
-///   mm) and `laser.txt` (`t r0 … r360`: ms, mm, from −90° counter-clockwise in steps of ½°, by
-///   a laser 0.12 m before the robot's centre).
 ///
-/// A range of at least the sensor's longest is `NoEcho`, also if that is rounded to, or cut at,
-/// the decimal places of the range. One below its shortest, 0, a negative one and NaN are
-/// `Missing`. The longest range is what the log states; where it states several, the smallest.
+/// - a text log of CARMEN, with lines `PARAM`, `ODOM`, `TRUEPOS`, `SONAR`, and those of
+///   [`Sensor::Laser`]. The reader passes over other lines, and over comments after `#`. The log
+///   may be packed with gzip, whatever its name. `SONAR` and `RAWLASER` have no pose; it is
+///   interpolated between the two `ODOM` around their time, if these are no more than 2 s apart. If
+///   times are too coarse to tell lines apart, the order of lines and the logger's time place a
+///   frame. A clock may start anew; a line for which the clock leapt is passed over. If `TRUEPOS`
+///   is (nearly) as frequent as `ODOM`, it has all poses;
+/// - a folder with `od.txt` (`t x y theta`: ms, mm, mm, 1/10°), `sonar.txt` (`t s0 s1 …`: ms, mm)
+///   and `laser.txt` (`t r0 … r360`: ms, mm, from −90° counter-clockwise in steps of ½°, by a laser
+///   0.12 m before the robot's centre).
+///
+/// A range of at least the sensor's longest is `NoEcho`, also if the longest is rounded to, or cut
+/// at, the decimal places of the range. A range below the sensor's shortest, 0, a negative one and
+/// NaN are `Missing`. The longest range is the one that the log states; of several, the smallest.
 ///
 /// ```no_run
 /// use covmap_log::{LogOptions, LogReader, Sensor};
@@ -83,10 +83,10 @@ pub struct LogReader {
 }
 
 impl LogReader {
-    /// The frames of a CARMEN log, or of a folder of files.
+    /// Opens a CARMEN log, or a folder of files.
     ///
     /// # Errors
-    /// If a file is not there or cannot be read.
+    /// If a file is missing or cannot be read.
     pub fn open(path: impl AsRef<Path>, options: &LogOptions) -> Result<Self, LogError> {
         let path = path.as_ref();
         if path.is_dir() {
@@ -101,10 +101,10 @@ impl LogReader {
         Self::of_lines(Lines::open(path)?, options)
     }
 
-    /// The frames of a CARMEN log in `input`; `path` names it in errors.
+    /// Reads a CARMEN log from `input`; errors name it by `path`.
     ///
     /// # Errors
-    /// If its beginning, or the file of poses, cannot be read.
+    /// If the log's beginning, or the file of poses, cannot be read.
     pub fn carmen(
         path: impl AsRef<Path>,
         input: impl Read + Send + 'static,
@@ -123,7 +123,7 @@ impl LogReader {
         Ok(Self::new(source, poses, options))
     }
 
-    /// The frames of a folder whose files were opened.
+    /// Reads a folder whose files are open.
     #[cfg(test)]
     pub(super) fn of_files(frames: Lines, poses: PoseFile, options: &LogOptions) -> Self {
         let source = Source::Folder(Box::new(FolderLog::new(frames, options)));
@@ -141,17 +141,17 @@ impl LogReader {
         Self { source, poses, in_step, way, place, account, wanted, frames, ended }
     }
 
-    /// What was passed over so far, and why.
+    /// Returns the frames passed over so far, with the reasons.
     pub fn skipped(&self) -> &Skipped {
         &self.account.skipped
     }
 
-    /// What the log had so far, and what was taken from where.
+    /// Returns the account of the log so far: its contents, and the sources of its numbers.
     pub fn account(&self) -> &Account {
         &self.account
     }
 
-    /// Where the odometry of a CARMEN log passed after its last frame.
+    /// Returns the poses that the odometry of a CARMEN log passed after its last frame.
     pub fn rest(&mut self) -> Vec<Passed> {
         match &mut self.source {
             Source::Carmen(log) => log.rest(),
@@ -192,7 +192,7 @@ impl LogReader {
             return Ok(());
         };
         self.account.placed_by_order += usize::from(in_line.is_some());
-        // What was long before the first frame is no part of the log.
+        // Fixes long before the first frame are not part of the log.
         let first = if self.frames == 0 { place } else { self.place };
         for (i, fix) in poses.part(first, place).iter().enumerate() {
             self.way.push(first + i, fix);

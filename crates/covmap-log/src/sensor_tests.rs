@@ -1,4 +1,4 @@
-//! What a log says of its sensors, and what is said of a log.
+//! The statements of a log about its sensors, and the account of a log.
 
 use super::tests::{carmen, options, pack, two_sonars};
 use super::*;
@@ -15,7 +15,7 @@ fn read(sensor: Sensor, log: &str) -> (Vec<LogFrame>, Account) {
 
 const ODOM: [&str; 2] = ["ODOM 1 2 0 0 0 0 10 h 10\n", "ODOM 3 2 0 0 0 0 11 h 11\n"];
 
-/// A log with one scan of two sonars between two lines of odometry.
+/// Returns a log with one scan of two sonars between two lines of odometry.
 fn sonars(head: &str, ranges: &str) -> String {
     format!("{head}{}SONAR 0.2 2 {ranges} 0.2 0 0 0 0.2 1.5 10.5 h 10.5\n{}", ODOM[0], ODOM[1])
 }
@@ -34,7 +34,7 @@ fn the_longest_range_that_the_log_states_is_no_echo() {
         let taken = &account.sensors[0].taken;
         assert!(taken.iter().any(|taken| taken.source == format!("PARAM {name}")), "{taken:?}");
     }
-    // One that is stated after the first scan, and one that changes on the way.
+    // One range is stated after the first scan, and one changes on the way.
     let late = sonars("", "2.00 1.5") + "PARAM robot_max_sonar 2.0 0 h 0\n";
     assert_eq!(read(Sensor::Sonar, &late).0[0].scan.ranges[0], Range::NoEcho);
     let both = sonars("PARAM robot_max_sonar 4 0 h 0\n", "2.00 4.00")
@@ -81,7 +81,7 @@ fn raw_and_rear_lasers_are_read() {
         assert_eq!(frames[0].scan.ranges, [Range::Echo(1.0), Range::NoEcho, Range::Missing]);
         assert_eq!(account.poses, "lines ODOM");
     }
-    // The second looks back; both make rings of their own.
+    // The second laser faces back; both lasers have rings of their own.
     let offset = "PARAM robot_rearlaser_offset -0.2 0 h 0\n";
     let log = format!("{offset}{}{}{}{}", ODOM[0], raw(1, 10.5), raw(2, 10.5), ODOM[1]);
     let (frames, account) = read(Sensor::Laser, &log);
@@ -97,7 +97,7 @@ fn raw_and_rear_lasers_are_read() {
     assert!((frames[1].ring.beams()[1].pose.translation.x + 0.2).abs() < 1e-9);
     assert!((frames[1].scan.pose.translation.x - 1.0).abs() < 1e-9);
     assert_eq!(account.sensors[0].lines, "ROBOTLASER2");
-    // Of two lines for one scan, that with a pose of its own is used.
+    // Of two lines for one scan, the one with a pose of its own is used.
     let log = format!("{}{}{}", raw(1, 6.0), robot(1, 1.1), raw(1, 6.0));
     let (frames, account) = read(Sensor::Laser, &log);
     assert_eq!((frames.len(), account.left_out), (1, vec![("RAWLASER1", 2)]));
@@ -118,7 +118,7 @@ fn true_poses_win_over_odometry() {
     let (frames, _) = read(Sensor::Laser, &log);
     assert!((frames[0].scan.pose.translation.x - 4.5).abs() < 1e-12);
     assert!((frames[0].ring.beams()[0].pose.translation.x - 0.1).abs() < 1e-9, "its mounting");
-    // A localisation that speaks up at times does not.
+    // A localisation that reports now and then does not have all poses.
     let odometry: String = (0..9).map(|i| format!("ODOM {i} 2 0 0 0 0 {i} h {i}\n")).collect();
     let log = truth(4.0, 0.0) + &odometry + &sonars("", "1.5 1.5");
     let (frames, account) = read(Sensor::Sonar, &log);

@@ -1,4 +1,4 @@
-//! What of a log was passed over, and why.
+//! The parts of a log that were passed over, and the reasons.
 
 use std::fmt;
 use std::path::Path;
@@ -6,15 +6,16 @@ use std::path::Path;
 /// Why a frame was passed over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SkipReason {
-    /// A field is missing, or is no number that it could be.
+    /// A field is missing, or is not a possible number.
     Unreadable,
-    /// There are not as many ranges as announced, or as the ring has sensors.
+    /// The number of ranges differs from the announced one, or from the number of the ring's
+    /// sensors.
     Count,
-    /// The clock leapt for it, ahead or back.
+    /// The clock leapt for this frame, ahead or back.
     Clock,
-    /// No poses shortly before and after it are known.
+    /// No poses are known shortly before and after the frame.
     NoPose,
-    /// It comes from another sensor than the first frame, or from one mounted elsewhere.
+    /// The frame comes from another sensor than the first frame, or from one mounted elsewhere.
     Geometry,
 }
 
@@ -26,8 +27,10 @@ const REASONS: [(SkipReason, &str); 5] = [
     (SkipReason::Geometry, "of another sensor than the first"),
 ];
 
-/// Counts what was passed over. Displayed, it is a sentence such as
-/// `skipped 3 of 413 frames: 2 with a wrong number of ranges, 1 for which the clock leapt`.
+/// Counts of the parts that were passed over.
+///
+/// The display is a sentence such as `skipped 3 of 413 frames: 2 with a wrong number of ranges, 1
+/// for which the clock leapt`.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Skipped {
     frames: usize,
@@ -38,37 +41,38 @@ pub struct Skipped {
 }
 
 impl Skipped {
-    /// The frames that were found so far, good or not.
+    /// Returns the number of frames found so far, good or not.
     pub fn frames(&self) -> usize {
         self.frames
     }
 
-    /// The frames that were passed over.
+    /// Returns the number of frames that were passed over.
     pub fn total(&self) -> usize {
         self.counts.iter().sum()
     }
 
-    /// The frames that were passed over for a reason.
+    /// Returns the number of frames that were passed over for a reason.
     pub fn count(&self, reason: SkipReason) -> usize {
         self.counts[reason as usize]
     }
 
-    /// The lines with poses or parameters that were passed over.
+    /// Returns the number of lines with poses or parameters that were passed over.
     pub fn poses(&self) -> usize {
         self.poses
     }
 
-    /// The readings of good frames that are NaN or negative, and count as missing.
+    /// Returns the number of readings of good frames that are NaN or negative, and count as
+    /// missing.
     pub fn readings(&self) -> usize {
         self.readings
     }
 
-    /// File, line, field and fault of the first of all these.
+    /// Returns file, line, field and fault of the first of all these.
     pub fn first(&self) -> Option<&str> {
         self.first.as_deref()
     }
 
-    /// Whether nothing was lost.
+    /// Returns whether nothing was lost.
     pub fn is_empty(&self) -> bool {
         self.total() + self.poses + self.readings == 0
     }
@@ -117,7 +121,7 @@ impl fmt::Display for Skipped {
     }
 }
 
-/// A number of things.
+/// Returns a number with its noun, in the plural if needed.
 pub(super) fn plural(n: usize, word: &str) -> String {
     format!("{n} {word}{}", if n == 1 { "" } else { "s" })
 }
@@ -126,7 +130,7 @@ pub(super) fn plural(n: usize, word: &str) -> String {
 #[derive(Debug)]
 pub(super) struct Damage {
     pub(super) reason: SkipReason,
-    /// Field and fault.
+    /// The field and its fault.
     pub(super) message: String,
 }
 
@@ -136,7 +140,7 @@ impl Damage {
     }
 }
 
-/// What is said of a line for which the clock leapt.
+/// Returns the fault of a line for which the clock leapt.
 pub(super) fn leapt(time: f64) -> Damage {
     let fault = format!("time: {time} s is not between those before and after");
     Damage::new(SkipReason::Clock, fault)

@@ -29,7 +29,7 @@ pub(super) fn options(sensor: Sensor) -> LogOptions {
     LogOptions { sensor, ring: two_sonars(), poses: None }
 }
 
-/// All frames, what was skipped, and the error at the end.
+/// All frames, the skipped ones, and the error at the end.
 pub(super) type Outcome = (Vec<LogFrame>, Skipped, Option<LogError>);
 
 pub(super) fn drain(mut reader: LogReader) -> Outcome {
@@ -72,7 +72,7 @@ const ODOM_1: &str = "ODOM 1.0 2.0 0.0 0 0 0 10.0 host 10.0\n";
 const ODOM_2: &str = "ODOM 3.0 2.0 1.0 0 0 0 11.0 host 11.0\n";
 const SONAR: &str = "SONAR 0.2 2 1.5 6.0 0.2 0 0 0 0.2 1.5 10.5 host 10.5\n";
 
-/// A log of one scan with a line in the place of its sonar line.
+/// Checks that a log of one scan is refused with this line in place of its sonar line.
 #[track_caller]
 fn refused(line: &str, reason: SkipReason, fault: &str) {
     let log = format!("{ODOM_1}{SONAR}{line}\n{ODOM_2}");
@@ -122,7 +122,7 @@ fn lasers_are_rings_of_lines_and_keep_their_own_poses() {
     assert!((beams[0].pose.rotation.angle().to_degrees() + 90.0).abs() < 1e-9);
     assert!((beams[179].pose.rotation.angle().to_degrees() - 89.0).abs() < 1e-9);
     assert!((beams[0].pose.translation.x - 0.1).abs() < 1e-9);
-    // A correction moves the laser, and the robot with it.
+    // A correction moves the laser, and moves the robot with the laser.
     assert!((frames[0].scan.pose.translation.x - 1.0).abs() < 1e-9);
     assert!((frames[1].scan.pose.translation.x - 4.0).abs() < 1e-9);
 
@@ -282,7 +282,7 @@ fn files_that_are_not_there_are_errors() {
 
 #[test]
 fn a_hundred_thousand_scans_stream() {
-    /// Makes a log while it is read.
+    /// A log that is made while it is read.
     struct Made {
         scan: u32,
         rest: Cursor<Vec<u8>>,

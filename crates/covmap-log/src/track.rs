@@ -1,17 +1,17 @@
-//! Where the robot was, and when: poses in the order of their lines, and between them.
+//! The poses of the robot and their times: in the order of their lines, and in between.
 
 use nalgebra::{Isometry2, Translation2};
 use std::collections::VecDeque;
 
-/// Poses farther apart in time than this have nothing to say about what is between them \[s\].
+/// The longest time between two poses that allows poses in between \[s\].
 pub(super) const LONGEST_GAP: f64 = 2.0;
-/// A line may come so much later than what is stamped alike \[s\]. A clock that is farther off
-/// has leapt.
+/// The longest delay of a line after others of the same time \[s\]; a clock that is farther off has
+/// leapt.
 pub(super) const LATEST_LINE: f64 = 2.0;
-/// The number of last poses that are remembered: at 1000 Hz those of 4 s.
+/// The number of last poses that are remembered: 4 s at 1000 Hz.
 const REMEMBERED: usize = 4096;
 
-/// When something was: by the clock of its sensor, and by that of the logger \[s\].
+/// A time by the clock of the sensor, and by that of the logger \[s\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stamp {
     pub(super) time: f64,
@@ -19,17 +19,17 @@ pub(super) struct Stamp {
 }
 
 impl Stamp {
-    /// The time from another to this one \[s\]; 0 if neither clock tells.
+    /// Returns the time elapsed since another stamp \[s\]; 0 if neither clock tells.
     pub(super) fn since(&self, before: &Self) -> f64 {
         let elapsed = self.time - before.time;
         let by_logger = || Some(self.logger? - before.logger?);
-        // A clock that was set tells nothing.
+        // A clock that was set does not tell.
         let tells = |seconds: &f64| *seconds > 0.0 && *seconds < 3600.0;
         Some(elapsed).filter(tells).or_else(|| by_logger().filter(tells)).unwrap_or(0.0)
     }
 }
 
-/// Where the robot was at a time.
+/// The robot's pose at a time.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Fix {
     pub(super) stamp: Stamp,
@@ -37,17 +37,17 @@ pub(super) struct Fix {
     pub(super) pose: Isometry2<f64>,
 }
 
-/// A pose, and how many fixes come before it.
+/// A pose, and the number of fixes before it.
 pub(super) type Place = (Isometry2<f64>, usize);
 
-/// The pose a share of the way from `a` to `b`, on the straight line and the shorter turn.
+/// Returns the pose a share of the way from `a` to `b`, on the straight line and the shorter turn.
 fn between(a: &Isometry2<f64>, b: &Isometry2<f64>, share: f64) -> Isometry2<f64> {
     let place = a.translation.vector.lerp(&b.translation.vector, share);
     let turn = a.rotation.rotation_to(&b.rotation).powf(share);
     Isometry2::from_parts(Translation2::from(place), a.rotation * turn)
 }
 
-/// The pose at a time \[s\] from `a` to `b`, if they are not too far apart.
+/// Returns the pose at a time \[s\] from `a` to `b`, if they are not too far apart.
 pub(super) fn pose_between(a: &Fix, b: &Fix, time: f64) -> Option<Isometry2<f64>> {
     let (t0, t1) = (a.stamp.time, b.stamp.time);
     if time < t0 || time > t1 || t1 - t0 > LONGEST_GAP {
@@ -60,19 +60,21 @@ pub(super) fn pose_between(a: &Fix, b: &Fix, time: f64) -> Option<Isometry2<f64>
     }
 }
 
-/// What the second of three fixes in a row is, by their times.
+/// The verdict on the second of three fixes in a row, by their times.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) enum Middle {
-    /// It follows the first, or it is the first of a clock that starts anew.
+    /// The second follows the first, or is the first of a clock that starts anew.
     Good,
-    /// The third belongs before it.
+    /// The third belongs before the second.
     Late,
-    /// The clock leapt for this one.
+    /// The clock leapt for the second.
     Glitch,
 }
 
-/// One reading of a clock is wrong if the one before and the one after it are in order, and it
-/// is not between them.
+/// Judges the second of three fixes in a row.
+///
+/// If the first and the third are in order, and the second lies outside of them by more than
+/// [`LATEST_LINE`], the second is a glitch.
 pub(super) fn middle(first: f64, second: f64, third: f64) -> Middle {
     if first > third {
         return Middle::Good;
@@ -85,7 +87,7 @@ pub(super) fn middle(first: f64, second: f64, third: f64) -> Middle {
     }
 }
 
-/// How often a time is that of the line before.
+/// Counts the times that repeat the time of the line before.
 #[derive(Debug, Default)]
 pub(super) struct Ties {
     stamps: usize,
@@ -94,7 +96,7 @@ pub(super) struct Ties {
 }
 
 impl Ties {
-    /// Whether this time is that of the line before.
+    /// Adds a time, and returns whether it is that of the line before.
     #[allow(clippy::float_cmp, reason = "the same digits")]
     pub(super) fn add(&mut self, time: f64) -> bool {
         let tied = self.last == Some(time);
@@ -104,7 +106,7 @@ impl Ties {
         tied
     }
 
-    /// Whether the clock is too coarse to tell the lines apart.
+    /// Returns whether the clock is too coarse to tell the lines apart.
     pub(super) fn is_coarse(&self) -> bool {
         self.tied > 0 && 4 * self.tied >= self.stamps
     }
@@ -114,15 +116,15 @@ impl Ties {
 #[derive(Debug, Default)]
 pub(super) struct Track {
     fixes: VecDeque<Fix>,
-    /// How many were forgotten.
+    /// The number of forgotten fixes.
     forgotten: usize,
     pub(super) ties: Ties,
-    /// How often the clock started anew.
+    /// The number of times that the clock started anew.
     pub(super) restarts: usize,
 }
 
 impl Track {
-    /// Adds a fix. One before it is given back if the clock leapt for it.
+    /// Adds a fix, and returns the one before it if the clock leapt for that one.
     pub(super) fn push(&mut self, fix: Fix) -> Option<Fix> {
         if self.fixes.back().is_none_or(|last| last.pose != fix.pose) {
             self.ties.add(fix.stamp.time);
@@ -146,33 +148,35 @@ impl Track {
         leapt
     }
 
-    /// Whether a time is of another clock than the last fix, though the logger had both at once.
+    /// Returns whether a time is of another clock than the last fix, though the logger had both at
+    /// once.
     pub(super) fn is_apart(&self, stamp: &Stamp) -> bool {
         let Some(last) = self.fixes.back() else { return false };
         let elapsed = |a: Option<f64>, b: Option<f64>| Some(b? - a?);
         let at_once = elapsed(last.stamp.logger, stamp.logger)
             .is_some_and(|seconds| (0.0..=LATEST_LINE).contains(&seconds));
-        // A logger whose clock stands still tells nothing.
+        // A logger whose clock stands still does not tell.
         let first = self.fixes.front().and_then(|first| first.stamp.logger);
         let runs = elapsed(first, last.stamp.logger).is_some_and(|seconds| seconds > 0.0);
         at_once && runs && (stamp.time - last.stamp.time).abs() > LATEST_LINE
     }
 
-    /// How many fixes there were.
+    /// Returns the number of all fixes.
     pub(super) fn count(&self) -> usize {
         self.forgotten + self.fixes.len()
     }
 
-    /// Whether all that can tell of a time was there: two fixes in order, and both later.
+    /// Returns whether all fixes that matter to a time were read: two in order, both later.
     pub(super) fn is_past(&self, time: f64) -> bool {
         let mut last = self.fixes.iter().rev().map(|fix| fix.stamp.time);
         let (Some(b), Some(a)) = (last.next(), last.next()) else { return false };
         time < a && a <= b
     }
 
-    /// The pose at a time \[s\]: recorded, or between the two around it. The last fix may be one
-    /// for which the clock leapt, unless the log has ended; then all that is remembered is looked
-    /// through, and otherwise what is recent.
+    /// Returns the pose at a time \[s\]: recorded, or interpolated between the two around it.
+    ///
+    /// Unless the log has ended, the clock may have leapt for the last fix, and the search covers
+    /// the recent fixes only. At the end the search covers all remembered fixes.
     #[allow(clippy::float_cmp, reason = "a recorded time is found by its digits")]
     pub(super) fn at(&self, time: f64, ended: bool) -> Option<Place> {
         let last = self.fixes.len().checked_sub(1)?;
@@ -193,7 +197,8 @@ impl Track {
         None
     }
 
-    /// The pose at a line, by the order of lines, and by the logger's clock between two of them.
+    /// Returns the pose at a line, by the order of lines, and by the logger's clock between two
+    /// fixes.
     #[allow(clippy::float_cmp, reason = "the same digits")]
     pub(super) fn at_line(&self, line: usize, stamp: &Stamp) -> Option<Place> {
         let after = self.fixes.partition_point(|fix| fix.line < line);
@@ -203,7 +208,7 @@ impl Track {
             return Some((next.pose, self.forgotten + after));
         };
         let logger = |fix: &Fix| fix.stamp.logger;
-        // How far it is from the fix before, by the logger's clock, of how much.
+        // The logger's time since the fix before, and that between both fixes.
         let (since, gap) = match (logger(before), stamp.logger, next.and_then(logger)) {
             (Some(t0), Some(t), Some(t1)) if t0 <= t && t <= t1 => (t - t0, t1 - t0),
             (Some(t0), Some(t), _) => ((t - t0).max(0.0), 0.0),
@@ -221,7 +226,7 @@ impl Track {
         Some((pose, self.forgotten + after))
     }
 
-    /// How many fixes come before a time, of those just read.
+    /// Returns the number of fixes before a time, which must be a recent one.
     pub(super) fn place(&self, time: f64) -> usize {
         let later = |fix: &&Fix| {
             let ahead = fix.stamp.time - time;
@@ -282,10 +287,10 @@ mod tests {
         let track = track(&[(20.0, 0.0), (20.5, 0.5), (0.25, 1.0), (0.75, 2.0)]);
         assert!((x_at(&track, 0.5).unwrap() - 1.5).abs() < 1e-12);
         assert_eq!(track.restarts, 1);
-        // 20.2 s was long ago; at the end all that is remembered is looked through.
+        // 20.2 s was long ago; at the end the search covers all remembered fixes.
         assert_eq!(x_at(&track, 20.2), None);
         assert!((track.at(20.25, true).unwrap().0.translation.x - 0.25).abs() < 1e-12);
-        // What lies before the new beginning is not taken from the old time.
+        // A time before the new beginning is not taken from the old run.
         assert!(!track.is_past(0.75) && track.is_past(0.1));
         assert_eq!(x_at(&track, 0.1), None);
     }

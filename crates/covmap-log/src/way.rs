@@ -4,31 +4,31 @@ use super::track::{Fix, Stamp};
 use nalgebra::Isometry2;
 use std::collections::VecDeque;
 
-/// Less is the trembling of a robot that stands \[m\].
+/// The shortest step \[m\]: shorter ones are the trembling of a standing robot.
 const SHORTEST_STEP: f64 = 0.01;
-/// The most poses that are kept between two frames; of more, every second one.
+/// The largest number of poses kept between two frames; of more, every second is kept.
 const MOST: usize = 4096;
 
-/// Where the robot passed between two frames, by its odometry.
+/// A pose that the robot passed between two frames, by its odometry.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Passed {
-    /// `world_from_robot` by odometry, which may be in another place than the scan's pose.
+    /// `world_from_robot` by odometry, whose frame may differ from that of the scan's pose.
     pub pose: Isometry2<f64>,
-    /// The time since the pose before \[s\]; 0 if the clocks do not tell it.
+    /// The time since the pose before \[s\]; 0 if the clocks do not tell.
     pub seconds: f64,
 }
 
-/// The fixes that were passed since the last frame.
+/// The fixes passed since the last frame.
 #[derive(Debug, Default)]
 pub(super) struct Way {
-    /// Each with how many fixes there were before it.
+    /// Each fix, with the number of fixes before it.
     fixes: VecDeque<(usize, Fix)>,
-    /// Of the last fix or frame that was taken out.
+    /// The stamp of the last fix or frame taken out.
     last: Option<Stamp>,
 }
 
 impl Way {
-    /// Adds the next fix, of which there were `number` before.
+    /// Adds the next fix, which has `number` fixes before it.
     pub(super) fn push(&mut self, number: usize, fix: &Fix) {
         let place = |fix: &Fix| fix.pose.translation.vector;
         let moved = |(_, last): &(usize, Fix)| (place(fix) - place(last)).norm() >= SHORTEST_STEP;
@@ -45,21 +45,21 @@ impl Way {
         self.fixes.push_back((number, *fix));
     }
 
-    /// Takes back the fix of a line, if it is the last.
+    /// Removes the fix of a line, if it is the last.
     pub(super) fn take_back(&mut self, line: usize) {
         if self.fixes.back().is_some_and(|(_, fix)| fix.line == line) {
             self.fixes.pop_back();
         }
     }
 
-    /// The way to a frame with a pose by odometry, which has a number of fixes before it.
+    /// Returns the way to a frame with a pose by odometry and a number of fixes before it.
     pub(super) fn to(&mut self, before: usize, stamp: Stamp, pose: Isometry2<f64>) -> Vec<Passed> {
         let mut way = self.until(before);
         way.push(self.step(stamp, pose));
         way
     }
 
-    /// The way after the last frame.
+    /// Returns the way after the last frame.
     pub(super) fn rest(&mut self) -> Vec<Passed> {
         self.until(usize::MAX)
     }

@@ -1,5 +1,5 @@
-//! What the sensor model makes of an echo from 1 m, as in Fig. 3 of the paper: for each
-//! distance of a cell the probability of each coverage, in percent.
+//! Prints the evidence of an echo from 1 m, as in Fig. 3 of the paper: for each distance of a cell
+//! the probability of each coverage, in percent.
 //!
 //! ```text
 //! cargo run -p covmap-model --example print_the_model

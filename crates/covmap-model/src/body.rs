@@ -1,4 +1,5 @@
-//! The body as a contact sensor: where it was nothing is; where it stopped something is.
+//! The body as a contact sensor: the cells that it passed are free, and something that stopped it
+//! is covered.
 
 mod event;
 mod front;
@@ -12,28 +13,28 @@ use nalgebra::{Point2, Vector2};
 use std::collections::BTreeMap;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-/// Each side of a cell is divided into 8 parts: all parts of a cell, a bit each, are a u64.
+/// Number of parts along each side of a cell: all parts of a cell, a bit each, are a u64.
 const PARTS: i32 = 8;
 
-/// What is touched is looked for so far under the front of the body \[sides of a part\]: half of a
-/// part's diagonal, so that the part in which it lies is none whose centre the body was over.
+/// Distance from the body to the point where the touched object is sought \[sides of a part\]: half
+/// of a part's diagonal, so that the centre of the part around this point was not under the body.
 const DEPTH: f64 = FRAC_1_SQRT_2;
 
-/// However surely one cell alone explains a contact, so much of its share is left for what is not
-/// in the map: what readings say of the cell is not lost.
+/// Least weight of the other causes if one cell alone explains a contact, in units of its share. It
+/// stands for objects that are not in the map, and keeps the evidence of readings about the cell.
 const ELSEWHERE: f64 = 1e-3;
 
-/// Of a cell that the body may have touched, readings leave at least this probability, spread over
-/// all coverages: where one thing can be touched and not be heard, others can.
+/// Least probability, spread over all coverages, that readings leave to a cell that the body may
+/// have touched: where one object can be touched and not heard, others can be as well.
 const DOUBT: f64 = 0.1;
 
-/// What the robot's body tells of the map: where it was, and where it touched something.
+/// The robot's body as a contact sensor: the places that it passed, and its contacts.
 ///
-/// Choice: the paper has no contact sensor. A disc that drives on and stops at something touches
-/// it with its **front**: the half of its rim that looks ahead. What touched it lies where the
-/// body has never been. Of the front's width, as it is seen along the way, cell i holds the share
-/// w_i where the body has not been yet; and the body meets matter first in a cell in proportion
-/// to the share and to the coverage:
+/// Choice: the paper has no contact sensor. A disc that drives on and stops at an object touches it
+/// with its **front**: the half of its rim that looks ahead. The object lies where the body has
+/// never been. Cell i holds the share w_i of the front's width, as seen along the way, in places
+/// that the body has not passed yet. The body meets matter first in a cell in proportion to the
+/// cell's share and to its coverage:
 ///
 /// ```text
 /// p(contact | c_1 … c_m) ∝ Σ w_i · c_i            w_i = ∫ cos φ dφ / 2 over those parts of i
@@ -41,35 +42,35 @@ const DOUBT: f64 = 0.1;
 /// ```
 ///
 /// The second line is exact Bayes where the cells are independent, as Eq. (3) has it; the
-/// expectations are those without this contact. So a wall that is known explains a bump; where all
-/// seems free, each cell of the front may be it; and the more of
-/// the front the body has passed through at other times, the surer it is which. What has been
-/// passed through is kept in parts of an eighth of a cell, by their centres.
+/// expectations are those without this contact. A known wall therefore explains a contact; where
+/// all cells seem free, each cell of the front may be the cause; and the more of the front the body
+/// passes at other times, the more certain the cause becomes. The parts that the body has passed,
+/// of an eighth of a cell each, are kept by their centres.
 ///
-/// A contact remains true when later readings speak against it, as those of a mirroring wall do
-/// again and again. So it is kept as a condition on the posterior, and not multiplied in once:
+/// A contact remains true when later readings contradict it, as those of a mirroring wall do again
+/// and again. It is therefore a condition on the posterior and is not multiplied in once:
 /// [`hold`](Self::hold) renews the shares and the expectations after each scan (expectation
-/// propagation with one factor a contact, one turn a scan). Readings that contradict a contact
-/// share their error, which their product does not know. Choice: of a cell that may have been
-/// touched they leave about a tenth of the probability, spread over all coverages: an entropy of .48
-/// nats with 11 bins, which is resolved by default, and enough for the neighbours of a wall that
-/// was found to be wall as well. Of a cell that nobody measured a contact says something only if
-/// the cell explains half of it.
+/// propagation with one factor per contact, one turn per scan). Readings that contradict a contact
+/// share their error, which their product ignores. Choice: such readings leave about a tenth of the
+/// probability of a cell that may have been touched, spread over all coverages. With 11 bins this
+/// is an entropy of .48 nats, which is resolved by default, and it suffices for the neighbours of a
+/// detected wall to be found as wall as well. A contact changes a cell without readings only if the
+/// cell explains half of the contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Body {
     grid: Grid,
     radius: f64,
-    /// The parts of each cell in which the body was.
+    /// The parts of each cell that the body has passed.
     passed: Vec<u64>,
     contacts: Vec<Contact>,
-    /// The contacts at whose front a cell is.
+    /// The contacts that have a cell at their front.
     at: BTreeMap<Cell, Vec<usize>>,
 }
 
-/// Something was touched.
+/// One contact of the body.
 #[derive(Debug, Clone, PartialEq)]
 struct Contact {
-    /// The parts of cells at the front, and the shares of its width.
+    /// The parts of cells at the front, with their shares of its width.
     parts: Vec<(Cell, u64, f64)>,
     touched: Vec<Touched>,
 }
@@ -80,22 +81,22 @@ struct Touched {
     cell: Cell,
     /// w_j
     share: f64,
-    /// Σ_(i≠j) w_i · E\[c_i\]; `None` where the contact says nothing of the cell.
+    /// Σ_(i≠j) w_i · E\[c_i\]; `None` where the contact says nothing about the cell.
     others: Option<f64>,
 }
 
 impl Body {
-    /// A disc of `radius` \[m\] that was nowhere yet on the grid of a map.
+    /// Creates a disc of `radius` \[m\] that has not been anywhere yet on the grid of a map.
     pub fn new(grid: Grid, radius: f64) -> Self {
         let (passed, contacts) = (vec![0; grid.len()], Vec::new());
         Self { grid, radius, passed, contacts, at: BTreeMap::new() }
     }
 
-    /// Integrates that the body was all the way between two points \[m\] and touched nothing, as
-    /// [`integrate_body`]. Returns what changed, in row-major order.
+    /// Integrates a way between two points \[m\] on which the body touched nothing, as
+    /// [`integrate_body`] does. Returns the changes, in row-major order.
     ///
     /// # Panics
-    /// This and the others: if the map is on another grid.
+    /// If the map is on another grid; this holds for all methods.
     pub fn moved(
         &mut self,
         map: &mut CoverageMap,
@@ -107,8 +108,8 @@ impl Body {
         self.renew_all(map, changes, concerned)
     }
 
-    /// Integrates that the body, with its centre `at` \[m\], touched something when it drove on in
-    /// a `direction`. Returns what changed, in row-major order.
+    /// Integrates a contact of the body, with its centre `at` \[m\], while it drove on in a
+    /// `direction`. Returns the changes, in row-major order.
     ///
     /// A direction or a place that is not finite is no contact.
     pub fn touched(
@@ -135,8 +136,8 @@ impl Body {
         self.renew_all(map, Vec::new(), vec![number])
     }
 
-    /// Renews what follows from the contacts at whose fronts a scan changed something. Returns all
-    /// changes, those given and its own, in row-major order, each cell once.
+    /// Renews the contacts that have a changed cell at their front. Returns all changes, those
+    /// given and its own, in row-major order, each cell once.
     pub fn hold(&mut self, map: &mut CoverageMap, changes: Vec<Change>) -> Vec<Change> {
         let at = changes.iter().filter_map(|change| self.at.get(&change.cell));
         let concerned = at.flatten().copied().collect();
@@ -160,7 +161,7 @@ impl Body {
         merge(changes)
     }
 
-    /// Takes note of where the body was. Returns the contacts of which that says more.
+    /// Records the way of the body. Returns the contacts that this concerns.
     fn pass(&mut self, from: Point2<f64>, to: Point2<f64>) -> Vec<usize> {
         let mut concerned = Vec::new();
         let step = self.grid.resolution() / f64::from(PARTS);
@@ -187,7 +188,7 @@ impl Body {
 }
 
 impl Contact {
-    /// Replaces what the contact said of its cells by what it says now.
+    /// Replaces the old evidence of the contact about its cells by the present one.
     fn renew(&mut self, map: &mut CoverageMap, grid: &Grid, passed: &[u64]) -> Vec<Change> {
         let bins = map.bins();
         let mut without: Vec<[f64; MAX_BINS]> =
@@ -211,7 +212,8 @@ impl Contact {
         let sum: f64 = expected.iter().sum();
         let mut changes = Vec::new();
         for ((touched, without), own) in self.touched.iter_mut().zip(without).zip(expected) {
-            // What nobody measured is a wall for its likeliness alone, not for a small share.
+            // A contact changes a cell without readings only if the cell explains half of it, not
+            // for a small share.
             let says = own > 0.0 && (map.is_known(touched.cell) || own >= 0.5 * sum);
             let others = says.then_some((sum - own).max(ELSEWHERE * touched.share));
             if touched.others.is_none() && others.is_none() {
@@ -230,12 +232,12 @@ impl Contact {
 }
 
 impl Touched {
-    /// p(contact | c) of this cell; where it says nothing, 1.
+    /// Returns p(contact | c) of this cell; 1 if the contact says nothing about it.
     fn likelihood(&self, coverage: f64) -> f64 {
         self.others.map_or(1.0, |others| self.share * coverage + others)
     }
 
-    /// The posterior of the cell without this contact.
+    /// Returns the posterior of the cell without this contact.
     fn without(&self, map: &CoverageMap) -> [f64; MAX_BINS] {
         let bins = map.bins();
         let mut p = [0.0; MAX_BINS];
@@ -249,7 +251,8 @@ impl Touched {
     }
 }
 
-/// Raises the bins of a histogram to those of a uniform one of weight `least`, and normalises it.
+/// Raises the bins of a histogram to at least those of a uniform one of weight `least`, and
+/// normalises it.
 fn normalise_above(p: &mut [f64], least: f64) {
     let sum: f64 = p.iter().sum();
     let floor = least / p.len() as f64;
@@ -258,7 +261,7 @@ fn normalise_above(p: &mut [f64], least: f64) {
     p.iter_mut().for_each(|p| *p /= sum);
 }
 
-/// The bit of a part of a cell.
+/// Returns the bit of a part of a cell.
 fn bit(part: Cell) -> u64 {
     1 << (part.y.rem_euclid(PARTS) * PARTS + part.x.rem_euclid(PARTS))
 }

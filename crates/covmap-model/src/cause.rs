@@ -1,4 +1,4 @@
-//! The update by cause: which surface of the map answered, and what that says of each cell.
+//! The update by cause: the surface of the map that answered, and the evidence about each cell.
 
 use crate::parameters::MOST_BEARINGS;
 use crate::{CauseParameters, Outcome};
@@ -9,24 +9,24 @@ use covmap::bin_coverage;
 pub struct Met {
     /// d^l, the distance from the sensor to the cell's centre \[m\].
     pub cell_distance: f64,
-    /// Where the cell lies across the beam: from 0 at its right border to 1 at its left.
+    /// Position across the beam: from 0 at its right border to 1 at its left.
     pub across: f64,
 }
 
-/// Where "passed" is less than this, nothing is said: a cell far away stays unknown, and is not
-/// called free for a millionth of its probability.
+/// Least share of "passed" that counts: a cell far away stays unknown, and does not become free by
+/// a millionth of its probability.
 const LEAST_PASSED: f64 = 1e-3;
 
-/// A cell with smaller shares than this is not touched.
+/// Least sum of the shares that touches a cell.
 const LEAST_SHARES: f64 = 1e-6;
 
-/// Who caused a reading, by the map before the scan.
+/// The causes of a reading, by the map before the scan.
 ///
-/// Eq. (9) treats every cell of a cone as if it were alone: one echo calls a whole arc half
-/// covered, though one surface caused it. The paper's first footnote says so. This update keeps
-/// the paper's form, a mixture of a Gaussian and a uniform distribution over coverages, and lets
-/// the map say how large the share of each is. A beam is divided into M bearings. With δ = d^l − z
-/// and E\[c\] the expected coverage of a cell before the scan, an echo from z has the causes
+/// Eq. (9) treats every cell of a cone as if it were alone: one echo makes a whole arc half
+/// covered, though one surface caused it. The paper's first footnote says so. This update keeps the
+/// paper's form, a mixture of a Gaussian and a uniform distribution over coverages, and takes the
+/// share of each from the map. A beam is divided into M bearings. With δ = d^l − z and E\[c\] the
+/// expected coverage of a cell before the scan, an echo from z has the causes
 ///
 /// ```text
 /// o_i = max(0, 2·E[c_i] − 1)                                        how opaque a known cell is
@@ -38,20 +38,20 @@ const LEAST_SHARES: f64 = 1e-6;
 /// ```
 ///
 /// c_m is the probability that the surface in bearing m answered, L that any surface of the map
-/// did; 1 − L is left to chance: a mirrored sound, another robot, what the map does not know. What
-/// the reading then says of one cell is [`Causes::evidence`].
+/// did; 1 − L is left to chance: a mirrored sound, another robot, an object that is not in the map.
+/// [`Causes::evidence`] is the evidence of the reading about one cell.
 ///
 /// An echo from beyond the usable range, and no echo, have no cause in the map: L = β·S and
-/// L = ν·S, with S over all the cells that they passed.
+/// L = ν·S, with S over all the cells that the beam passed.
 ///
-/// What of it is Bayes: given the cause, the mixture is the posterior of one cell, and the shares
-/// are the posterior probabilities of causes of which each is as likely as its surface is covered
-/// and in clear view, to the power p. What is approximation: causes are taken from the means of
-/// the cells and not jointly with them (one step of assumed-density filtering); the power p and
-/// the constant a_0, which are fitted; and S, which stands for the joint event that nothing
-/// nearer answered. A cell's own mean is a part of its bearing's a_m: leaving it out, so that
-/// only the other bearings and chance compete, explains whole explorations by .02 nats a cell
-/// worse, and would cost a cause for every cell.
+/// This is Bayes in part: given the cause, the mixture is the posterior of one cell, and the shares
+/// are the posterior probabilities of the causes, if each is as likely as its surface is covered,
+/// to the power p, and in clear view. The rest is approximation: the causes follow from the means
+/// of the cells and not jointly with them (one step of assumed-density filtering); the power p and
+/// the constant a_0 are fitted; and S stands for the joint event that no nearer surface answered. A
+/// cell's own mean is a part of its bearing's a_m. Without it, so that only the other bearings and
+/// chance compete, the update explains whole explorations by .02 nats a cell worse, and would need
+/// a cause for every cell.
 ///
 /// Relatives: Thrun's forward models \[2001\]; Konolige's redundant and mirrored readings
 /// \[MURIEL, 1997\]; the sensor cause model of Agha-mohammadi et al. \[2019\], whose update is
@@ -64,34 +64,34 @@ pub struct Causes {
     pub any: f64,
 }
 
-/// What an outcome can say of a cell, whatever caused it.
+/// Possible evidence of an outcome about a cell, whatever its cause.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Role {
-    /// How much of the cause in its bearing counts for N(μ, σ): 1 at the end, b behind it, else 0.
+    /// Weight of the cause in its bearing for N(μ, σ): 1 at the end, b behind it, else 0.
     pub weight: f64,
     /// μ.
     pub mu: f64,
     /// σ.
     pub sigma: f64,
-    /// f(d^l, θ), how much counts for N(0, σ_free) of what any other surface caused; 0 behind.
+    /// f(d^l, θ), weight of all other causes for N(0, σ_free); 0 behind the end.
     pub free: f64,
 }
 
-/// What a reading says of one cell: the shares of N(μ, σ) and of N(0, σ_free).
+/// Evidence of a reading about one cell: the shares of N(μ, σ) and of N(0, σ_free).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Shares {
     pub(crate) ended: f64,
     pub(crate) passed: f64,
 }
 
-/// How the cells that a beam meets bear on its reading: told of each of them once, in any order,
-/// it finds the [`Causes`].
+/// Clues of the cells that a beam meets to the causes of its reading. The caller adds each cell
+/// once, in any order, and then asks for the [`Causes`].
 #[derive(Debug, Clone)]
 pub struct Clues<'a> {
     parameters: &'a CauseParameters,
     /// r \[m\]
     resolution: f64,
-    /// z, or up to where a beam without a cause passed \[m\].
+    /// z, or the distance up to which a beam without a cause passed \[m\].
     end: f64,
     /// v_m
     clear: [f64; MOST_BEARINGS],
@@ -100,7 +100,7 @@ pub struct Clues<'a> {
 }
 
 impl Shares {
-    /// Whether the reading says nothing of the cell.
+    /// Returns whether the reading says nothing about the cell.
     #[inline(always)]
     pub(crate) fn are_nothing(&self) -> bool {
         self.ended + self.passed < LEAST_SHARES
@@ -108,7 +108,8 @@ impl Shares {
 }
 
 impl<'a> Clues<'a> {
-    /// No cell yet; `end` is z, or up to where the beam passed if nothing answered \[m\].
+    /// Creates clues without a cell. `end` is z, or the distance up to which the beam passed if
+    /// nothing answered \[m\].
     pub fn new(parameters: &'a CauseParameters, resolution: f64, end: f64) -> Self {
         let (clear, surface) = ([1.0; MOST_BEARINGS], [0.0; MOST_BEARINGS]);
         Self { parameters, resolution, end, clear, surface }
@@ -135,13 +136,13 @@ impl<'a> Clues<'a> {
         libm::pow(mean, self.parameters.first_echo)
     }
 
-    /// The causes of an echo.
+    /// Returns the causes of an echo.
     fn of_echo(&self) -> Causes {
         let (p, first) = (self.parameters, self.first());
         let mut ended = [0.0; MOST_BEARINGS];
         let views = self.clear.iter().zip(&self.surface).take(p.bearings);
         for (a, (clear, surface)) in ended.iter_mut().zip(views) {
-            // No cell in the bearing, or one that is surely free, answers nothing.
+            // A bearing without a cell, or with a cell that is surely free, answers nothing.
             *a =
                 if *surface > 0.0 { first * clear * libm::pow(*surface, p.sharpness) } else { 0.0 };
         }
@@ -150,7 +151,8 @@ impl<'a> Clues<'a> {
         Causes { ended, any: sum / (sum + p.chance) }
     }
 
-    /// The causes of an outcome: of an echo, or of a beam that no surface in range answered.
+    /// Returns the causes of an outcome: of an echo, or of a beam that no surface in range
+    /// answered.
     pub fn of(&self, outcome: Outcome) -> Causes {
         let p = self.parameters;
         let passed = |share| Causes { ended: [0.0; MOST_BEARINGS], any: share * self.first() };
@@ -162,14 +164,14 @@ impl<'a> Clues<'a> {
     }
 }
 
-/// How opaque a cell is that is covered so much.
+/// Returns the opacity of a cell of an expected coverage.
 #[inline(always)]
 pub fn opaque(expected: f64) -> f64 {
     (2.0 * expected - 1.0).max(0.0)
 }
 
 impl CauseParameters {
-    /// The bearing of a cell.
+    /// Returns the bearing of a cell by its position across the beam.
     #[inline(always)]
     pub fn bearing(&self, across: f64) -> usize {
         #[allow(clippy::cast_possible_truncation, reason = "at most 16; saturates")]
@@ -177,7 +179,7 @@ impl CauseParameters {
         bearing.min(self.bearings - 1)
     }
 
-    /// w(δ): how likely an echo from z comes from a cell, by δ = d^l − z \[m\].
+    /// Returns w(δ), the likelihood that an echo from z comes from a cell, by δ = d^l − z \[m\].
     #[inline(always)]
     pub fn nearness(&self, resolution: f64, delta: f64) -> f64 {
         let border = delta.abs() - 0.5 * resolution;
@@ -189,7 +191,7 @@ impl CauseParameters {
         }
     }
 
-    /// f(d^l, θ), how much of "passed" is said of a cell:
+    /// Returns f(d^l, θ), the share of "passed" that reaches a cell:
     ///
     /// ```text
     /// f = f_0 · exp(−(d^l/d_f)² − ½ ((2·across − 1)/width)²)      0 where that is below .001
@@ -201,7 +203,7 @@ impl CauseParameters {
         if f < LEAST_PASSED { 0.0 } else { f }
     }
 
-    /// What an outcome can say of a cell.
+    /// Returns the role of a cell for an outcome.
     pub fn role(&self, resolution: f64, met: Met, outcome: Outcome) -> Role {
         let passed = Role { weight: 0.0, mu: 0.0, sigma: 1.0, free: self.passed(met) };
         let Outcome::Echo(end) = outcome else { return passed };
@@ -228,7 +230,7 @@ impl CauseParameters {
 }
 
 impl Role {
-    /// The shares that causes give a cell of a bearing.
+    /// Returns the shares that causes give a cell of a bearing.
     #[inline(always)]
     pub(crate) fn shares(&self, causes: &Causes, bearing: usize) -> Shares {
         let own = if self.weight > 0.0 { causes.ended[bearing] } else { 0.0 };
@@ -237,21 +239,23 @@ impl Role {
 }
 
 impl Causes {
-    /// The same of a reading of which so much is new: with the rest it repeats earlier ones, and
+    /// Returns the causes of a reading of this novelty. The rest of it repeats earlier readings and
     /// tells nothing.
     #[must_use]
     pub fn by_as_much(self, novelty: f64) -> Self {
         Self { ended: self.ended.map(|share| novelty * share), any: novelty * self.any }
     }
 
-    /// The causes where the map knows nothing yet: M bearings of unknown cells, all in clear view.
+    /// Returns the causes of an echo in an unknown map: M bearings of unknown cells, all in clear
+    /// view.
     pub fn in_an_unknown_map(parameters: &CauseParameters) -> Self {
         let mut clues = Clues::new(parameters, 1.0, 1.0);
         clues.surface[..parameters.bearings].fill(parameters.unknown_coverage);
         clues.of_echo()
     }
 
-    /// Evaluates what an outcome with these causes says of the coverage x of a cell, at every bin:
+    /// Evaluates the evidence of an outcome with these causes about the coverage x of a cell, at
+    /// every bin:
     ///
     /// ```text
     /// p(c_l = x | d) = (1 − s − g)·U + s·N(μ, σ, x) + g·N(0, σ_free, x)
@@ -262,10 +266,10 @@ impl Causes {
     /// behind it, δ > r/2               s = b·c_m, μ = 1   σ = σ_behind
     /// ```
     ///
-    /// all three normalised over the bins, U uniform; μ is Eq. (10) with ℓ for the depth of the
-    /// cell, cut off at 0 and 1. It is a posterior of the cell under a uniform prior, as Eq. (9)
-    /// is, and never 0. Returns whether it says anything at all: shares that sum to less than
-    /// 1e-6 do not touch a cell.
+    /// All three are normalised over the bins, U uniform; μ is Eq. (10) with ℓ for the depth of the
+    /// cell, cut off at 0 and 1. The evidence is a posterior of the cell under a uniform prior, as
+    /// Eq. (9) is, and never 0. Returns whether the reading touches the cell: shares that sum to
+    /// less than 1e-6 do not.
     pub fn evidence(
         &self,
         parameters: &CauseParameters,
@@ -287,7 +291,7 @@ impl Causes {
     }
 }
 
-/// N(μ, σ, x) at the coverage x of every bin, normalised over the bins.
+/// Evaluates N(μ, σ, x) at the coverage x of every bin, normalised over the bins.
 pub fn gaussian(mu: f64, sigma: f64, out: &mut [f64]) {
     let bins = out.len();
     for (bin, o) in out.iter_mut().enumerate() {

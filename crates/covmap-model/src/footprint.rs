@@ -1,4 +1,4 @@
-//! Which cells a beam covers: the one traversal of cones and lines in this project.
+//! The cells that a beam covers: the one traversal of cones and lines in this project.
 
 mod rows;
 
@@ -12,10 +12,10 @@ use std::f64::consts::TAU;
 /// Bearings closer than this to the border of a sector lie on it [rad].
 const BORDER: f64 = 1e-9;
 
-/// The number of cells of a row that are looked at side by side.
+/// The number of cells of a row that are tested side by side.
 const WIDE: usize = 8;
 
-/// Which cells belong to a beam.
+/// Rule for the cells that belong to a beam.
 ///
 /// Choice: Eq. (9) has no angle term, so a beam covers all cells within an angle.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
@@ -29,16 +29,16 @@ pub enum FootprintRule {
         /// Half of a sector's angle \[rad\].
         half_angle: f64,
     },
-    /// For any arrangement: the cells within `half_angle` of the beam's axis, seen from the
-    /// sensor, half-open, and those that the axis itself traverses, which are all there are
-    /// where the beam is narrower than a cell.
+    /// For any arrangement: the cells within `half_angle` of the beam's axis, seen from the sensor,
+    /// half-open, and the cells that the axis itself traverses. Where the beam is narrower than a
+    /// cell, only the latter belong to it.
     Cones {
         /// Half of the cone's angle \[rad\]; 0 for a line.
         half_angle: f64,
     },
 }
 
-/// Why a footprint cannot be made.
+/// Error of a footprint that cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum FootprintError {
     /// The half-angle is impossible.
@@ -61,19 +61,19 @@ pub struct FootprintCell {
     pub cell: Cell,
     /// d^l, the distance from the sensor to the cell's centre \[m\].
     pub cell_distance: f64,
-    /// Where the cell's centre lies across the beam: 0 at the right border, 1 at the left, and
-    /// evenly along the chord between them; ½ where the beam has no width.
+    /// Position of the cell's centre across the beam: 0 at the right border, 1 at the left, and
+    /// linear along the chord between them; ½ where the beam has no width.
     pub across: f64,
 }
 
 /// A beam's sector in the frame of the robot.
 #[derive(Debug, Clone)]
 struct Sector {
-    /// Where the sensor sits; ranges are measured from here.
+    /// Position of the sensor, from which ranges are measured.
     sensor: Point2<f64>,
-    /// Where the sensor looks.
+    /// Direction of the sensor.
     axis: Vector2<f64>,
-    /// Where bearings are measured from.
+    /// Point from which bearings are measured.
     apex: Point2<f64>,
     /// The borders: a bearing `b` is inside if `first ≤ b < last`, counter-clockwise.
     first: Vector2<f64>,
@@ -93,14 +93,14 @@ fn direction(angle: f64) -> Vector2<f64> {
     Vector2::new(cos, sin)
 }
 
-/// The length of a vector: `norm`, whose square root no compiler can do side by side.
+/// Returns the length of a vector: `norm`, whose square root no compiler can do side by side.
 #[inline(always)]
 fn length(v: Vector2<f64>) -> f64 {
     v.norm_squared().sqrt()
 }
 
 impl Footprint {
-    /// The footprints of a ring's beams.
+    /// Creates the footprints of a ring's beams.
     ///
     /// # Errors
     /// If the half-angle is impossible, or sectors cannot tell two sensors apart.
@@ -132,18 +132,18 @@ impl Footprint {
         Ok(Self { sectors: widths.into_iter().enumerate().map(sector).collect() })
     }
 
-    /// Where each sensor sits, and where it looks, in the frame of the robot.
+    /// Returns the position and the direction of each sensor in the frame of the robot.
     pub fn sensors(&self) -> impl Iterator<Item = (Point2<f64>, Vector2<f64>)> {
         self.sectors.iter().map(|sector| (sector.sensor, sector.axis))
     }
 
-    /// The number of beams.
+    /// Returns the number of beams.
     pub fn beams(&self) -> usize {
         self.sectors.len()
     }
 
-    /// About how many cells of side `resolution` \[m\] a beam covers up to a distance from its
-    /// sensor \[m\], rather too many than too few.
+    /// Estimates the number of cells of side `resolution` \[m\] that a beam covers up to a distance
+    /// from its sensor \[m\]. The estimate is rather too high than too low.
     ///
     /// # Panics
     /// If there is no such beam.
@@ -156,7 +156,8 @@ impl Footprint {
         area / (resolution * resolution) + 1.5 * reach / resolution + 4.0
     }
 
-    /// How far from the robot's centre a beam covers cells, up to a distance from its sensor \[m\].
+    /// Returns the distance from the robot's centre within which the beams cover cells, up to a
+    /// distance from their sensors \[m\].
     pub fn farthest(&self, reach: f64) -> f64 {
         let from_center = |sector: &Sector| sector.sensor.coords.norm();
         self.sectors.iter().map(from_center).fold(0.0, f64::max) + reach
@@ -202,8 +203,8 @@ impl Footprint {
         }
     }
 
-    /// The first and the last cell of a rectangle of the grid that holds all footprints.
-    /// It is empty, the last before the first, if the pose is not finite.
+    /// Returns the first and the last cell of a rectangle of the grid that holds all footprints.
+    /// The rectangle is empty, the last cell before the first, if the pose is not finite.
     pub(crate) fn extent(&self, grid: &Grid, pose: &Isometry2<f64>, reach: f64) -> (Cell, Cell) {
         let radius = self.farthest(reach);
         let (center, margin) = (Point2::from(pose.translation.vector), Vector2::repeat(radius));
@@ -214,19 +215,19 @@ impl Footprint {
     }
 }
 
-/// The cells of a grid in a box: the first and the last, which is before the first if there are
-/// none.
+/// Returns the first and the last cell of a grid in a box. The last is before the first if there
+/// are none.
 fn inside(grid: &Grid, low: Point2<f64>, high: Point2<f64>) -> (Cell, Cell) {
     let (low, high) = (grid.unbounded_cell_at(low), grid.unbounded_cell_at(high));
     let side = |n: usize| i32::try_from(n).unwrap_or(i32::MAX) - 1;
     let last = Cell::new(high.x.min(side(grid.width())), high.y.min(side(grid.height())));
     let first = Cell::new(low.x.max(0), low.y.max(0));
-    // However far out the box is, all that is computed of these must not overflow.
+    // The callers compute with these cells, which must not overflow for a box that is far out.
     let is_empty = last.x < first.x || last.y < first.y;
     if is_empty { (Cell::new(0, 0), Cell::new(-1, -1)) } else { (first, last) }
 }
 
-/// The angles to the right and to the left of each axis: half of the way to the next axis,
+/// Returns the angles to the right and to the left of each axis: half of the way to the next axis,
 /// but no more than `half_angle`.
 fn sector_widths(angles: &[f64], half_angle: f64) -> Result<Vec<(f64, f64)>, FootprintError> {
     let turn = |angle: f64| angle - TAU * (angle / TAU).floor();
@@ -260,7 +261,7 @@ impl Sector {
         }
     }
 
-    /// A box that holds all points of the sector within `reach` of the sensor.
+    /// Returns a box that holds all points of the sector within `reach` of the sensor.
     fn bounds(&self, reach: f64) -> (Point2<f64>, Point2<f64>) {
         let radius = reach + (self.sensor - self.apex).norm();
         let mut low = self.apex.inf(&self.sensor);
@@ -281,8 +282,8 @@ impl Sector {
         (low, high)
     }
 
-    /// The distances from the sensor of a cell and the next ones of its row, −1 for a cell
-    /// that the beam does not cover; and where they lie across the beam.
+    /// Returns the distances from the sensor of a cell and the next ones of its row, −1 for a cell
+    /// that the beam does not cover, and their positions across the beam.
     #[inline(always)]
     fn covered(&self, grid: &Grid, cell: Cell, reach: f64) -> ([f64; WIDE], [f64; WIDE]) {
         let y = grid.center(cell).y;
@@ -312,7 +313,7 @@ impl Sector {
         (distances, across)
     }
 
-    /// The distance from the sensor of a cell that the axis traverses; −1 for another.
+    /// Returns the distance from the sensor of a cell that the axis traverses; −1 for another cell.
     fn distance_along_axis(&self, grid: &Grid, cell: Cell, reach: f64) -> f64 {
         let from_sensor = grid.center(cell) - self.sensor;
         let distance = length(from_sensor);
@@ -322,7 +323,7 @@ impl Sector {
         if covered { distance } else { -1.0 }
     }
 
-    /// Whether the axis, from the sensor to `reach`, passes through the square of side `r`
+    /// Returns whether the axis, from the sensor to `reach`, passes through the square of side `r`
     /// at `corner`.
     fn axis_crosses(&self, corner: Point2<f64>, r: f64, reach: f64) -> bool {
         let (mut enter, mut leave) = (0.0f64, reach);

@@ -1,4 +1,5 @@
-//! Eq. (1)–(8): multiplying a measurement into the map, as printed; [`fast`] is what runs.
+//! Eq. (1)–(8), as printed: the multiplication of a measurement into the map. [`fast`] is the code
+//! that runs.
 
 mod by_cause;
 mod cause_terms;
@@ -15,8 +16,8 @@ use covmap_sonar::Scan;
 use nalgebra::{Point2, Vector2};
 
 impl SensorModel {
-    /// Visits each cell of C(l, d) of every reading of a scan, beam by beam, with its
-    /// distance from the sensor and what the reading means.
+    /// Visits each cell of C(l, d) of every reading of a scan, beam by beam, with its distance from
+    /// the sensor and the meaning of the reading.
     ///
     /// # Panics
     /// If the scan has not one reading for each beam of the model's ring.
@@ -37,8 +38,8 @@ impl SensorModel {
     }
 }
 
-/// Integrates a scan into a map, Eq. (8), as printed, cell by cell in f64: what [`integrate`]
-/// is tested against. Returns what changed, in row-major order, each cell once.
+/// Integrates a scan into a map by Eq. (8) as printed, cell by cell in f64. Tests compare
+/// [`integrate`] with it. Returns the changes, in row-major order, each cell once.
 ///
 /// # Panics
 /// As [`integrate`].
@@ -46,8 +47,8 @@ pub fn integrate_literally(model: &SensorModel, map: &mut CoverageMap, scan: &Sc
     integrate_new_literally(model, map, scan, &vec![1.0; scan.ranges.len()])
 }
 
-/// The same of a scan of which so much of each beam's reading is new: what [`integrate_new`] is
-/// tested against.
+/// Integrates a scan as [`integrate_literally`], with the novelty of each beam's reading. Tests
+/// compare [`integrate_new`] with it.
 ///
 /// # Panics
 /// As [`integrate_new`].
@@ -88,12 +89,12 @@ pub fn integrate_new_literally(
     merge(changes)
 }
 
-/// Integrates the robot's body as a contact sensor: cells that lie entirely inside the disc
-/// of `radius` \[m\] somewhere on the way from `from` to `to` are free and stay so, because
-/// the robot touched nothing there. Returns what changed, in row-major order.
+/// Integrates the robot's body as a contact sensor. Cells that lie entirely inside the area that
+/// the disc of `radius` \[m\] sweeps from `from` to `to` are free and stay so, because the robot
+/// touched nothing there. Returns the changes, in row-major order.
 ///
-/// Choice: the paper has no contact sensor. The worlds are static, so nothing can come to
-/// where the robot stood.
+/// Choice: the paper has no contact sensor. The worlds are static, so that nothing can come to a
+/// place where the robot stood.
 pub fn integrate_body(
     map: &mut CoverageMap,
     from: Point2<f64>,
@@ -111,8 +112,8 @@ pub fn integrate_body(
     inside.filter_map(|cell| map.pin_free(cell)).collect()
 }
 
-/// The cells of a grid whose centres are under the disc of `radius` \[m\] somewhere on the way
-/// from `from` to `to`, in row-major order.
+/// Returns the cells of a grid with their centres under the disc of `radius` \[m\] somewhere on the
+/// way from `from` to `to`, in row-major order.
 pub fn cells_under_body(grid: &Grid, from: Point2<f64>, to: Point2<f64>, radius: f64) -> Vec<Cell> {
     let margin = Vector2::repeat(radius);
     let cells = grid.cells_between(from.inf(&to) - margin, from.sup(&to) + margin);
@@ -131,8 +132,8 @@ pub(crate) fn is_under_body(
     (point - (from + way * along)).norm() <= radius
 }
 
-/// The cells that the readings of a scan intercept, with their distances from the sensor:
-/// those that a beam passed through and those in which it ended.
+/// Returns the cells that the readings of a scan intercept, with their distances from the sensor:
+/// the cells that a beam passed through and those in which it ended.
 ///
 /// # Panics
 /// If the scan has not one reading for each beam of the model's ring.
@@ -148,7 +149,7 @@ pub fn intercepted(model: &SensorModel, grid: &Grid, scan: &Scan) -> Vec<(Cell, 
     cells
 }
 
-/// One change for each cell, in row-major order.
+/// Returns one change for each cell, in row-major order.
 pub(crate) fn merge(mut changes: Vec<Change>) -> Vec<Change> {
     changes.sort_by_key(|change| change.cell);
     changes.dedup_by(|later, kept| {

@@ -1,10 +1,10 @@
-//! The sensor model of coverage maps: how a scan changes what the robot believes.
+//! The sensor model of coverage maps: how a scan changes the belief of the robot.
 //!
 //! Section 3 of Stachniss & Burgard (2003), equations (1)–(10). The principal type is
 //! [`SensorModel`]; [`integrate`] multiplies a scan into a map.
 //!
-//! This crate knows nothing of the world that the scans come from, and nothing of where to
-//! measure next.
+//! This crate knows neither the world in which the scans were taken nor where the robot measures
+//! next.
 //!
 //! # Units
 //! Metres, radians, nats; coverage in [0, 1].

@@ -1,4 +1,4 @@
-//! From where it was looked before: how much of a reading is new.
+//! Earlier looks, and the novelty of a reading after them.
 
 use crate::parameters::Repeats;
 use crate::{SensorModel, integrate_new};
@@ -6,31 +6,32 @@ use covmap::{Change, CoverageMap};
 use covmap_sonar::Scan;
 use nalgebra::{Isometry2, Vector2};
 
-/// Looks that are more than this many λ apart share no errors.
+/// Distance of two looks beyond which they share no errors, in units of λ.
 const FARTHEST: f64 = 3.0;
 
-/// The looks that were taken so far, and how much of another one would be new.
+/// The looks so far, which decide the novelty of the next one.
 ///
-/// Readings of one wall from one place share their errors: the wall does not answer at that angle, or
-/// a post in the cone answers for it. Eq. (8) multiplies them as if they were independent, and a
-/// robot that stands still grows surer for ever. Here a reading repeats an earlier one with the
-/// probability
+/// Readings of one wall from one place share their errors: the wall does not answer at that angle,
+/// or a post in the cone answers for it. Eq. (8) multiplies them as if they were independent, so
+/// that a robot that stands still becomes ever more certain. Here a reading repeats an earlier one
+/// with the probability
 ///
 /// ```text
 /// ρ = ρ_0 · exp(−½ (Δ/λ)²) · exp((cos Δφ − 1)/ψ²)
 /// ```
 ///
-/// by the distance Δ between both sensors and the angle Δφ between their axes, and says nothing then:
-/// its shares of "ended" and "passed" ([`crate::Causes`]) are multiplied by
+/// with the distance Δ between both sensors and the angle Δφ between their axes. A reading that
+/// repeats another says nothing: its shares of "ended" and "passed" ([`crate::Causes`]) are
+/// multiplied by
 ///
 /// ```text
 /// novelty = Π_j (1 − max_b ρ)         over the earlier scans j and their beams b
 /// ```
 ///
-/// So n looks from one place count as 1 + (1 − ρ_0) + (1 − ρ_0)² + …, never more than 1/ρ_0. The
-/// mixture is Bayes, given that a reading either repeats an earlier one or is independent of all; that
-/// the chances of repeating multiply is an approximation. With the product of Eq. (9), and with ρ_0 = 0,
-/// everything is new, as in the paper.
+/// Thus n looks from one place count as 1 + (1 − ρ_0) + (1 − ρ_0)² + …, at most 1/ρ_0. The mixture
+/// is Bayes, given that a reading either repeats an earlier one or is independent of all; the
+/// product of the chances of repeating is an approximation. With the product of Eq. (9), and with
+/// ρ_0 = 0, every reading is new, as in the paper.
 #[derive(Debug, Clone)]
 pub struct Looks {
     repeats: Repeats,
@@ -38,13 +39,13 @@ pub struct Looks {
 }
 
 impl Looks {
-    /// No look yet, with a model's parameters.
+    /// Creates an empty record with a model's parameters.
     pub fn new(model: &SensorModel) -> Self {
         Self { repeats: model.repeats(), taken: Vec::new() }
     }
 
-    /// Integrates a scan by as much as is new of it, and takes note of the look. Returns what
-    /// changed, in row-major order, each cell once.
+    /// Integrates a scan, weighted by its novelty, and records the look. Returns the changes, in
+    /// row-major order, each cell once.
     ///
     /// # Panics
     /// As [`crate::integrate`].
@@ -61,7 +62,7 @@ impl Looks {
         integrate_new(model, map, scan, &novelty)
     }
 
-    /// How much of each beam's reading at a pose would be new, in \[0, 1\].
+    /// Returns the novelty of each beam's reading at a pose, in \[0, 1\].
     pub fn novelty(&self, model: &SensorModel, pose: &Isometry2<f64>) -> Vec<f64> {
         let sensors: Vec<_> = model.footprint().sensors().collect();
         let ring = sensors.iter().map(|(at, _)| at.coords.norm()).fold(0.0, f64::max);
@@ -94,10 +95,11 @@ impl Looks {
 }
 
 impl Repeats {
-    /// Everything is new.
+    /// Parameters under which every reading is new.
     pub const NONE: Self = Self { share: 0.0, distance: 1.0, bearing: 1.0 };
 
-    /// ρ, by the distance between two sensors \[m\] and the cosine of the angle between their axes.
+    /// Returns ρ, by the distance between two sensors \[m\] and the cosine of the angle between
+    /// their axes.
     fn alike(&self, apart: f64, cos: f64) -> f64 {
         if apart > FARTHEST * self.distance {
             return 0.0;
@@ -106,12 +108,13 @@ impl Repeats {
         self.share * libm::exp(-0.5 * z * z + (cos - 1.0) / (self.bearing * self.bearing))
     }
 
-    /// 1 − ρ of a look with the same heading from so far away \[m\]: what it leaves to learn.
+    /// Returns 1 − ρ of a look with the same heading at a distance \[m\]: the novelty that it
+    /// leaves.
     pub fn left(&self, apart: f64) -> f64 {
         1.0 - self.alike(apart, 1.0)
     }
 
-    /// How far apart looks may be that share errors \[m\].
+    /// Returns the largest distance of looks that share errors \[m\].
     pub fn reach(&self) -> f64 {
         if self.share > 0.0 { FARTHEST * self.distance } else { 0.0 }
     }

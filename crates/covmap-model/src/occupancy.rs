@@ -5,7 +5,7 @@ use covmap::{Cell, Grid, Raster};
 use covmap_sonar::Scan;
 use serde::{Deserialize, Serialize};
 
-/// How the baseline weighs a beam.
+/// Weights of a beam in the baseline.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct OccupancyParameters {
@@ -40,13 +40,13 @@ pub struct OccupancyGrid {
 }
 
 impl OccupancyGrid {
-    /// A grid of which nothing is known.
+    /// Creates a grid of unknown cells.
     pub fn new(grid: Grid, parameters: OccupancyParameters) -> Self {
         let log_odds = Raster::filled(grid, None);
         Self { parameters, log_odds, pinned: Raster::filled(grid, false) }
     }
 
-    /// Integrates a scan: a cell in which a beam ends is hit, a cell before it missed.
+    /// Integrates a scan: a cell in which a beam ends is hit, a cell before it is missed.
     ///
     /// # Panics
     /// If the scan does not fit the model's ring.
@@ -80,7 +80,7 @@ impl OccupancyGrid {
         }
     }
 
-    /// The probability that each cell is occupied; `None` where nothing is known.
+    /// Returns the probability that each cell is occupied; `None` where nothing is known.
     pub fn probabilities(&self) -> Raster<Option<f64>> {
         self.log_odds.map(|value| value.map(|l| 1.0 / (1.0 + libm::exp(-l))))
     }

@@ -1,6 +1,6 @@
-//! What a reading means to the model.
+//! The meaning of a reading to the model.
 
-/// What a reading means to the model.
+/// Meaning of a reading to the model.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Outcome {
     /// An echo from this range \[m\], within the usable range.

@@ -18,7 +18,7 @@ use serde::{Deserialize, Serialize};
 /// f(d^l, d) = base + per_cell_distance · d^l + per_range · d
 /// ```
 ///
-/// Choice: the paper asks for functions that increase monotonously in d^l and d; we take
+/// Choice: the paper asks for functions that increase monotonically in d^l and d; this model takes
 /// linear ones with slopes ≥ 0.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -32,12 +32,12 @@ pub struct Linear {
 }
 
 impl Linear {
-    /// The function that is the same everywhere.
+    /// Creates a function that is the same everywhere.
     pub(crate) fn constant(base: f64) -> Self {
         Self { base, per_cell_distance: 0.0, per_range: 0.0 }
     }
 
-    /// The value for a cell at `cell_distance` \[m\] and a measured `range` \[m\].
+    /// Returns the value for a cell at `cell_distance` \[m\] and a measured `range` \[m\].
     #[inline(always)]
     pub fn at(&self, cell_distance: f64, range: f64) -> f64 {
         self.base + self.per_cell_distance * cell_distance + self.per_range * range
@@ -50,30 +50,31 @@ impl Linear {
     }
 }
 
-/// How a reading changes the belief: one of two updates, by name.
+/// Update of the belief by a reading: one of two, by name.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Update {
-    /// The paper's: every cell of the cone by itself, Eq. (9) and (10).
+    /// The paper's update: every cell of the cone by itself, Eq. (9) and (10).
     Product(ProductParameters),
-    /// Ours: the map says which surface may have caused the echo.
+    /// Our update: the map tells which surface may have caused the echo.
     Cause(CauseParameters),
 }
 
-/// The parameters of the sensor model, section 3, and of what the paper leaves open around it.
+/// Parameters of the sensor model, section 3, and of the details that the paper leaves open.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ModelParameters {
     /// Number of bins of each histogram, n.
     pub bins: usize,
-    /// Cells farther than this from the sensor are not updated \[m\].
+    /// Range beyond which an echo has no end in the map \[m\]: such an echo only frees the cells
+    /// before it.
     pub usable_range: f64,
-    /// Which cells a beam covers.
+    /// Rule for the cells that a beam covers.
     pub footprint: FootprintRule,
-    /// How a reading changes them.
+    /// Update of these cells by a reading.
     pub update: Update,
 }
 
-/// Why parameters make no model.
+/// Error of parameters that make no model.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ModelError {
     /// The number of bins is out of range.
@@ -107,7 +108,7 @@ pub enum ModelError {
         sigma_in: f64,
         /// The largest σ_out.
         sigma_out: f64,
-        /// Where it is reached \[m\].
+        /// Range at which it is reached \[m\].
         range: f64,
     },
     /// σ_out is narrower than half a bin.
@@ -124,7 +125,7 @@ pub enum ModelError {
     /// The number of bearings is out of range.
     #[error("model.bearings: {0} is not in 1..={MOST_BEARINGS}")]
     Bearings(usize),
-    /// Nothing but zeros: γ and the Gaussian must leave every bin possible.
+    /// γ is not positive: γ and the Gaussian must leave every bin possible.
     #[error("model.gamma: γ must be positive at distance 0, so that no reading is impossible")]
     NoUniformShare,
     /// The footprint does not fit the ring.
@@ -136,7 +137,7 @@ impl ModelError {
     /// Checks that a parameter lies in an interval.
     ///
     /// # Errors
-    /// If it does not, or is not a number.
+    /// If the parameter is out of the interval, or is not a number.
     pub fn within(name: &'static str, value: f64, min: f64, max: f64) -> Result<(), Self> {
         let good = (min..=max).contains(&value);
         good.then_some(()).ok_or(Self::OutOfRange { name, value, min, max })
@@ -144,7 +145,7 @@ impl ModelError {
 }
 
 impl Update {
-    /// The update's name.
+    /// Returns the update's name.
     pub fn name(&self) -> &'static str {
         match self {
             Self::Product(_) => "Product",
@@ -152,7 +153,7 @@ impl Update {
         }
     }
 
-    /// The parameters of Eq. (9), if that is the update.
+    /// Returns the parameters of Eq. (9), if this is the update.
     pub fn product(&self) -> Option<&ProductParameters> {
         match self {
             Self::Product(product) => Some(product),
@@ -160,7 +161,7 @@ impl Update {
         }
     }
 
-    /// The parameters of the update by cause, if that is the update.
+    /// Returns the parameters of the update by cause, if this is the update.
     pub fn cause(&self) -> Option<&CauseParameters> {
         match self {
             Self::Product(_) => None,
@@ -168,7 +169,8 @@ impl Update {
         }
     }
 
-    /// How far behind the end of a measurement cells are taken to be covered \[m\].
+    /// Returns the distance behind the end of a measurement up to which cells are taken to be
+    /// covered \[m\].
     pub fn behind(&self) -> f64 {
         match self {
             Self::Product(product) => product.behind,
@@ -176,7 +178,7 @@ impl Update {
         }
     }
 
-    /// Up to where a beam without an echo says that cells are free \[m\].
+    /// Returns the distance up to which a beam without an echo frees cells \[m\].
     pub fn no_echo_range(&self) -> f64 {
         match self {
             Self::Product(product) => product.no_echo.range,
@@ -186,7 +188,7 @@ impl Update {
 }
 
 impl ModelParameters {
-    /// A B21r's sonars, the default: 11 bins, 3 m usable range, and the update by cause as it was
+    /// Returns the default, a B21r's sonars: 11 bins, 3 m usable range, and the update by cause,
     /// fitted to whole explorations of simulated worlds (`configs/b21r.ron`).
     pub fn b21r() -> Self {
         Self {
@@ -197,18 +199,18 @@ impl ModelParameters {
         }
     }
 
-    /// The same sonars with Eq. (9), as it was fitted to the first 200 scans of explorations.
+    /// Returns the same sonars with Eq. (9), fitted to the first 200 scans of explorations.
     pub fn product() -> Self {
         Self { update: Update::Product(ProductParameters::fitted()), ..Self::b21r() }
     }
 
-    /// The same sonars with Eq. (9) and parameters that were chosen by hand on small worlds:
-    /// each reading says much more, and maps are surer than they ought to be.
+    /// Returns the same sonars with Eq. (9) and parameters that were chosen by hand on small
+    /// worlds: each reading says much more, and maps are more certain than they ought to be.
     pub fn by_hand() -> Self {
         Self { update: Update::Product(ProductParameters::by_hand()), ..Self::b21r() }
     }
 
-    /// These parameters with others of Eq. (9).
+    /// Returns these parameters with others of Eq. (9).
     #[must_use]
     pub fn with_product(self, change: impl FnOnce(&mut ProductParameters)) -> Self {
         let mut product = match self.update {
@@ -219,7 +221,7 @@ impl ModelParameters {
         Self { update: Update::Product(product), ..self }
     }
 
-    /// These parameters with others of the update by cause.
+    /// Returns these parameters with others of the update by cause.
     #[must_use]
     pub fn with_cause(self, change: impl FnOnce(&mut CauseParameters)) -> Self {
         let mut cause = match self.update {

@@ -1,13 +1,13 @@
-//! Eq. (9): what one reading says about one cell, as if the cell were alone.
+//! Eq. (9): the evidence of one reading about one cell, as if the cell were alone.
 
 use crate::{Linear, Outcome, ProductParameters};
 use covmap::bin_coverage;
 use std::f64::consts::PI;
 
-/// What Eq. (9) needs to know of a reading.
+/// Terms of a reading in Eq. (9).
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reading {
-    /// Where the beam ended \[m\]; infinite if it passed all cells that it says something of.
+    /// Where the beam ended \[m\]; infinite if it passed all cells that it concerns.
     end: f64,
     /// d of σ(d^l, d) and γ(d^l, d) \[m\].
     range: f64,
@@ -15,7 +15,7 @@ pub(crate) struct Reading {
 }
 
 impl ProductParameters {
-    /// What an outcome says, for all cells.
+    /// Returns the terms of an outcome for all cells.
     pub(crate) fn reading(&self, outcome: Outcome, usable_range: f64) -> Reading {
         let passed = |range, gamma| Reading { end: f64::INFINITY, range, gamma };
         match outcome {
@@ -25,7 +25,8 @@ impl ProductParameters {
         }
     }
 
-    /// μ, σ and γ of Eq. (9) for a cell of side `resolution` \[m\] at `cell_distance` \[m\].
+    /// Returns μ, σ and γ of Eq. (9) for a cell of side `resolution` \[m\] at
+    /// `cell_distance` \[m\].
     #[inline(always)]
     pub(crate) fn terms(
         &self,
@@ -50,13 +51,14 @@ impl ProductParameters {
     ) {
         let bins = out.len();
         let (mu, sigma, gamma) = self.terms(resolution, reading, cell_distance);
-        // exp ∘ log is four times as fast as libm's pow, which would be most of a fit's baselines and tables.
+        // exp ∘ log is four times as fast as libm's pow, which would take most of the time of a
+        // fit's baselines and tables.
         let tempered = |density: f64| match self.tempering {
             exponent if exponent < 1.0 => libm::exp(exponent * libm::log(density)),
             _ => density,
         };
-        // So far from the mean that the Gaussian is below half a unit in the last place of γ,
-        // the density is γ, to the last bit: that takes 6 % off a fit.
+        // Far from the mean, where the Gaussian is below half a unit in the last place of γ, the
+        // density is γ, to the last bit. This saves 6 % of a fit.
         let far = -2.0 * libm::log(gamma * sigma * f64::EPSILON / 8.0);
         let tail = tempered(gamma);
         let mut sum = 0.0;
@@ -69,13 +71,13 @@ impl ProductParameters {
     }
 }
 
-/// Eq. (10), [`crate::SensorModel::mu`].
+/// Evaluates Eq. (10), [`crate::SensorModel::mu`].
 #[inline(always)]
 pub(crate) fn mu(resolution: f64, delta: f64) -> f64 {
     (0.5 + delta / resolution).clamp(0.0, 1.0)
 }
 
-/// The density of a Gaussian, N(μ, σ, x) = exp(−z²/2) / (σ·√(2π)) with z = (x − μ)/σ.
+/// Returns the density of a Gaussian, N(μ, σ, x) = exp(−z²/2) / (σ·√(2π)) with z = (x − μ)/σ.
 fn normal(z: f64, sigma: f64) -> f64 {
     libm::exp(-0.5 * z * z) / (sigma * (2.0 * PI).sqrt())
 }

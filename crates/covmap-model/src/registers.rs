@@ -1,7 +1,8 @@
-//! With which vector registers many numbers are computed side by side.
+//! The vector registers with which many numbers are computed side by side.
 //!
-//! All kinds give the same bits; they differ in speed. So this is no parameter of a model or a
-//! planner, but of the process, and there for comparisons: by default the fastest are taken.
+//! All kinds give the same bits; they differ in speed. The kind is therefore a setting of the
+//! process, not of a model or a planner. It serves comparisons: by default the process takes the
+//! fastest.
 
 use pulp::Arch;
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -20,13 +21,16 @@ pub enum Registers {
 static WIDEST: AtomicU8 = AtomicU8::new(Registers::Avx512 as u8);
 
 impl Registers {
-    /// Everything that is built from now on uses these or narrower ones.
+    /// Limits everything that is built from now on to these registers or narrower ones.
     pub fn limit(self) {
         WIDEST.store(self as u8, Ordering::Relaxed);
     }
 
-    /// These, or the widest below them that the processor has and that are within the limit. On
-    /// processors without AVX the native ones, unless the limit is [`Registers::Scalar`].
+    /// Returns these registers, or the widest below them that the processor has and the limit
+    /// allows.
+    ///
+    /// On a processor without AVX it returns the native ones, unless the limit is
+    /// [`Registers::Scalar`].
     pub fn or_narrower(self) -> Arch {
         let widest = WIDEST.load(Ordering::Relaxed).min(self as u8);
         if widest == Registers::Scalar as u8 {

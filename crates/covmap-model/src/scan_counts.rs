@@ -1,23 +1,23 @@
-//! The paper's second baseline: counting how often a cell was scanned.
+//! The paper's second baseline: the number of scans of each cell.
 
 use covmap::{Cell, Grid, Raster};
 use serde::{Deserialize, Serialize};
 
-/// How much an interception counts.
+/// Weight of an interception.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Counting {
-    /// One, however far.
+    /// One, at any distance.
     Plain,
     /// `1 / (1 + d^l/half_distance)`: "we additionally discounted longer beams".
     Discounted {
-        /// The distance at which a beam counts half \[m\].
+        /// Distance at which a beam counts half \[m\].
         half_distance: f64,
     },
 }
 
 impl Counting {
-    /// The weight of a beam that intercepts a cell at `cell_distance` \[m\].
+    /// Returns the weight of a beam that intercepts a cell at `cell_distance` \[m\].
     pub fn weight(&self, cell_distance: f64) -> f64 {
         match self {
             Counting::Plain => 1.0,
@@ -26,7 +26,7 @@ impl Counting {
     }
 }
 
-/// How often each cell was intercepted by a measurement (section 5.1).
+/// Weighted number of measurements that intercepted each cell (section 5.1).
 #[derive(Debug, Clone)]
 pub struct ScanCounts {
     counting: Counting,
@@ -34,7 +34,7 @@ pub struct ScanCounts {
 }
 
 impl ScanCounts {
-    /// No cell was scanned yet.
+    /// Creates counts of cells that no scan has intercepted yet.
     pub fn new(grid: Grid, counting: Counting) -> Self {
         Self { counting, weights: Raster::filled(grid, 0.0) }
     }
@@ -48,7 +48,7 @@ impl ScanCounts {
         }
     }
 
-    /// The weight of every cell.
+    /// Returns the weight of every cell.
     pub fn weights(&self) -> &Raster<f64> {
         &self.weights
     }

@@ -1,4 +1,4 @@
-//! The sensor model: what readings mean, and what one says about one cell.
+//! The sensor model: the meaning of readings, and the evidence of one about one cell.
 
 use crate::cause::Clues;
 use crate::parameters::Repeats;
@@ -15,12 +15,12 @@ pub struct SensorModel {
     parameters: ModelParameters,
     resolution: f64,
     footprint: Footprint,
-    /// What kind of vector registers scans are integrated with.
+    /// Vector registers with which scans are integrated.
     registers: pulp::Arch,
 }
 
 impl SensorModel {
-    /// The model of a ring on a grid of cells of side `resolution` \[m\].
+    /// Creates the model of a ring on a grid of cells of side `resolution` \[m\].
     ///
     /// # Errors
     /// If a parameter is out of its interval, σ_in does not exceed every σ_out in range, a
@@ -38,17 +38,17 @@ impl SensorModel {
         Ok(Self { parameters: parameters.clone(), resolution, footprint, registers })
     }
 
-    /// The parameters.
+    /// Returns the parameters.
     pub fn parameters(&self) -> &ModelParameters {
         &self.parameters
     }
 
-    /// The side of a cell, r \[m\].
+    /// Returns the side of a cell, r \[m\].
     pub fn resolution(&self) -> f64 {
         self.resolution
     }
 
-    /// How much readings from one place repeat each other.
+    /// Returns the repetition among readings from one place.
     pub fn repeats(&self) -> Repeats {
         self.parameters.update.cause().map_or(Repeats::NONE, |cause| cause.repeats)
     }
@@ -57,18 +57,18 @@ impl SensorModel {
         self.registers
     }
 
-    /// Which cells each beam covers.
+    /// Returns the footprints of the beams.
     pub fn footprint(&self) -> &Footprint {
         &self.footprint
     }
 
-    /// Whether this model can update a map: as many bins, the same resolution.
+    /// Returns whether this model can update a map: as many bins, the same resolution.
     pub fn fits(&self, map: &CoverageMap) -> bool {
         map.bins() == self.parameters.bins
             && (map.grid().resolution() - self.resolution).abs() < 1e-12
     }
 
-    /// What a reading means; `None` for one that says nothing.
+    /// Returns the meaning of a reading; `None` for one that says nothing.
     pub fn outcome(&self, range: Range) -> Option<Outcome> {
         match range {
             Range::Echo(d) if !d.is_finite() || d < 0.0 => None,
@@ -79,12 +79,12 @@ impl SensorModel {
         }
     }
 
-    /// The farthest cell distance \[m\] at which an outcome updates a cell: C(l, d) of
+    /// Returns the farthest cell distance \[m\] at which an outcome updates a cell: C(l, d) of
     /// Eq. (14) ends there.
     ///
     /// Reading: "up to 20cm behind a cell, in which the measurement ends" are cells with
-    /// `d^l − d ≤ r/2 + 0.20`; what lies beyond stays as it is. Choice: no echo marks cells
-    /// up to a range of its own, and an echo from beyond the usable range those before it.
+    /// `d^l − d ≤ r/2 + 0.20`; the cells beyond stay as they are. Choice: no echo marks cells up to
+    /// a range of its own, and an echo from beyond the usable range marks those before it.
     pub fn reach(&self, outcome: Outcome) -> f64 {
         let half = 0.5 * self.resolution;
         match outcome {
@@ -94,12 +94,12 @@ impl SensorModel {
         }
     }
 
-    /// The largest [`Self::reach`] of all outcomes \[m\].
+    /// Returns the largest [`Self::reach`] of all outcomes \[m\].
     pub fn max_reach(&self) -> f64 {
         self.reach(Outcome::Echo(self.parameters.usable_range))
     }
 
-    /// The mean coverage of a cell, Eq. (10): with δ = d^l − d,
+    /// Returns the mean coverage of a cell, Eq. (10): with δ = d^l − d,
     ///
     /// ```text
     /// μ(δ) = 0          δ < −r/2     the beam passed through
@@ -119,8 +119,8 @@ impl SensorModel {
     /// normalised over the bins. `cell_distance` is d^l \[m\]; κ is the tempering exponent,
     /// 1 in the paper. Reading: γ is a density level added to the Gaussian's density.
     ///
-    /// The update by cause says different things in different maps ([`Causes`]); this is what it
-    /// says of a cell on the beam's axis where nothing is known yet.
+    /// The evidence of the update by cause depends on the map ([`Causes`]); this is the evidence
+    /// about a cell on the beam's axis in an unknown map.
     ///
     /// # Panics
     /// If `out` has not one place for each bin.
@@ -143,7 +143,7 @@ impl SensorModel {
         }
     }
 
-    /// [`Self::evidence`] as a histogram: a column of Fig. 3.
+    /// Returns [`Self::evidence`] as a histogram: a column of Fig. 3.
     pub fn evidence_histogram(&self, cell_distance: f64, outcome: Outcome) -> Histogram {
         let mut weights = vec![0.0; self.parameters.bins];
         self.evidence(cell_distance, outcome, &mut weights);

@@ -129,8 +129,8 @@ proptest! {
     }
 }
 
-/// A wall 1 m ahead that is known: an echo from there is believed, one from behind it is not, and
-/// of a room that is not known nothing is ruled out.
+/// A known wall 1 m ahead: an echo from there is believed, an echo from behind it is not, and
+/// nothing is ruled out in an unknown room.
 #[test]
 fn a_known_wall_explains_its_echo_and_hides_what_is_behind_it() {
     let model = SensorModel::new(&ModelParameters::b21r(), &SonarRing::b21r(), 0.1).unwrap();

@@ -1,7 +1,7 @@
 //! The paper's claims, in their order: each a small function from data to its tests.
 //!
-//! Numbers and thresholds were written before any result was seen. Claim 18, that every run
-//! ends, is no verdict but a test of the planner.
+//! Numbers and thresholds were written before any result was seen. Claim 18, that every run ends,
+//! has no verdict; a test of the planner checks it.
 
 mod counting;
 mod explored;
@@ -27,10 +27,10 @@ use crate::trial::Finding;
 use covmap_model::SensorModel;
 use explored::explored;
 
-/// All that the claims are judged by, for one configuration.
+/// The evidence for the claims, for one configuration.
 #[derive(Debug)]
 pub struct Evidence {
-    /// A cell that is covered 20 %, four times (Fig. 1, 2).
+    /// A cell with a coverage of 20 %, four times (Fig. 1, 2).
     pub cells: Vec<PartialCell>,
     /// The sensor model (Fig. 3).
     pub model: SensorModel,
@@ -40,23 +40,23 @@ pub struct Evidence {
     pub oblique: Oblique,
     /// The corridor, measured while driving (Table 1, Fig. 5).
     pub corridor: Runs,
-    /// Scan counting up to n (Fig. 6).
+    /// Runs of scan counting up to n (Fig. 6).
     pub counting: Runs,
-    /// All strategies, measuring at view-points only (Fig. 7).
+    /// Runs of all strategies, measuring at view-points only (Fig. 7).
     pub at_view_points: Runs,
-    /// All strategies, measuring while driving.
+    /// Runs of all strategies, measuring while driving.
     pub while_driving: Runs,
-    /// Strategies in other worlds.
+    /// Runs of strategies in other worlds.
     pub places: Runs,
-    /// Those of these worlds that are maps of map_server.
+    /// The names of the worlds among `places` that are maps of map_server.
     pub maps: Vec<String>,
-    /// The ends of IG_CL.
+    /// The ends of IG_CL, CL and IG.
     pub limits: Limits,
-    /// How fast the robot drives \[m/s\].
+    /// The robot's speed \[m/s\].
     pub speed: f64,
 }
 
-/// Claims 1–17 and 19–21.
+/// Returns the findings of claims 1–17 and 19–21.
 pub fn all(e: &Evidence) -> Vec<Finding> {
     vec![
         claim_1(&e.cells),

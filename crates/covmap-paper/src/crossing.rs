@@ -1,4 +1,4 @@
-//! Where the curve of scan counting meets the cross of CL in Fig. 6.
+//! The crossing of the curve of scan counting with the cross of CL in Fig. 6.
 
 /// A run in Fig. 6.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -9,21 +9,22 @@ pub(crate) struct Point {
     pub share: f64,
 }
 
-/// Where the curves meet, as far as that was measured.
+/// The share at which the curves meet, as far as the runs tell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Crossing {
-    /// At this share.
+    /// The curves meet at this share.
     At(f64),
-    /// Every counting run drives more than CL: if they meet, then below the smallest share that
-    /// counting came to.
+    /// Every counting run drives more than CL. If the curves meet, then below the smallest share
+    /// that counting reached.
     Below(f64),
-    /// CL drives more than every counting run: if they meet, then above the largest share that
-    /// counting came to. Perhaps never.
+    /// CL drives more than every counting run. If the curves meet at all, then above the largest
+    /// share that counting reached.
     Above(f64),
 }
 
 impl Crossing {
-    /// The smallest and the largest share at which they may meet; to meet never is to meet at 1.
+    /// Returns the smallest and the largest share at which the curves may meet; curves that never
+    /// meet count as meeting at 1.
     pub(crate) fn ends(self) -> [f64; 2] {
         match self {
             Self::At(share) => [share, share],
@@ -33,11 +34,10 @@ impl Crossing {
     }
 }
 
-/// The share of cells that counting explores with the mean path of CL; whoever needs a larger
-/// share drives less with CL. `None` without runs of both.
+/// Returns the share of cells that counting explores with the mean path of CL.
 ///
-/// The curve is the monotone one that is nearest to the counting runs (isotonic regression of
-/// the share on the path).
+/// For a larger share CL drives less. The curve is the monotone one nearest to the counting runs
+/// (isotonic regression of the share on the path). The result is `None` without runs of both.
 pub(crate) fn crossing(counting: &[Point], cl: &[Point]) -> Option<Crossing> {
     let mean = cl.iter().map(|point| point.path).sum::<f64>() / cl.len() as f64;
     let curve = curve(counting);
@@ -58,12 +58,12 @@ pub(crate) fn crossing(counting: &[Point], cl: &[Point]) -> Option<Crossing> {
     }
 }
 
-/// The monotone curve that is nearest to some runs, by pooling neighbours that fall.
+/// Returns the monotone curve nearest to some runs, by pooling neighbours that fall.
 pub(crate) fn curve(points: &[Point]) -> Vec<Point> {
     let mut points: Vec<Point> =
         points.iter().copied().filter(|p| p.path.is_finite() && p.share.is_finite()).collect();
     points.sort_by(|a, b| a.path.total_cmp(&b.path).then(a.share.total_cmp(&b.share)));
-    // Pools of neighbours: the sum of their shares, and how many they are.
+    // Pools of neighbours: the sum of their shares, and their number.
     let mut pools: Vec<(f64, usize)> = Vec::new();
     for point in &points {
         pools.push((point.share, 1));

@@ -1,4 +1,4 @@
-//! From experiments to figures: what `figure N` does, and `paper` for all.
+//! From experiments to figures: `figure N` draws one of them, `paper` all.
 
 use crate::built_in;
 use crate::error::Result;
@@ -15,17 +15,17 @@ use covmap_model::SensorModel;
 use covmap_plan::Strategy;
 use std::path::PathBuf;
 
-/// Seeds of Fig. 1 and 2.
+/// The number of seeds of Fig. 1 and 2.
 const SEEDS: u64 = 100;
 const QUICK_SEEDS: u64 = 20;
 
-/// One of the two configurations, as shipped, by its name.
+/// Returns one of the two configurations, as shipped, by its name.
 pub fn config(name: &str) -> Result<(Config, PathBuf)> {
     let built_in = if name == PAPER { built_in::PAPER } else { built_in::B21R };
     Ok(files::config(None, built_in)?)
 }
 
-/// Fig. 1 and 2: the cell that is covered 20 %, with both configurations.
+/// Makes Fig. 1 and 2: the cell with a coverage of 20 %, with both configurations.
 pub fn cells(session: &Session<'_>, output: &FigureFolder) -> Result<[Vec<PartialCell>; 2]> {
     let seeds = if session.quick { QUICK_SEEDS } else { SEEDS };
     let measure = |name| partial_cells::measure(&config(name)?.0, seeds);
@@ -35,7 +35,7 @@ pub fn cells(session: &Session<'_>, output: &FigureFolder) -> Result<[Vec<Partia
     Ok([paper, b21r])
 }
 
-/// Fig. 3: both sensor models.
+/// Makes Fig. 3: both sensor models.
 pub fn models(output: &FigureFolder) -> Result<[SensorModel; 2]> {
     let model = |name| -> Result<SensorModel> {
         let (config, file) = config(name)?;
@@ -46,7 +46,7 @@ pub fn models(output: &FigureFolder) -> Result<[SensorModel; 2]> {
     Ok([paper, b21r])
 }
 
-/// Fig. 5 and Table 1: the corridor, with extended counting up to n* as well.
+/// Makes Fig. 5 and Table 1: the corridor, with extended counting up to n* as well.
 pub fn corridor(session: &Session<'_>, output: &FigureFolder) -> Result<[Runs; 2]> {
     let table_1 = session.run(campaign("table1", session.quick)?)?;
     let extended = n_star(session, &table_1)?;
@@ -77,7 +77,7 @@ pub fn corridor(session: &Session<'_>, output: &FigureFolder) -> Result<[Runs; 2
     Ok(both)
 }
 
-/// Fig. 6: scan counting up to n.
+/// Makes Fig. 6: scan counting up to n.
 pub fn counting(session: &Session<'_>, output: &FigureFolder) -> Result<[Runs; 2]> {
     let series = session.run(campaign("fig6", session.quick)?)?;
     let both = [series.runs(PAPER, true), series.runs(B21R, true)];
@@ -87,7 +87,7 @@ pub fn counting(session: &Session<'_>, output: &FigureFolder) -> Result<[Runs; 2
     Ok(both)
 }
 
-/// Fig. 7: all strategies, at view-points only and while driving.
+/// Makes Fig. 7: all strategies, at view-points only and while driving.
 pub fn strategies(session: &Session<'_>, output: &FigureFolder) -> Result<[[Runs; 2]; 2]> {
     let series = session.run(campaign("fig7", session.quick)?)?;
     let one = |name: &str| -> Result<[Runs; 2]> {
@@ -106,7 +106,8 @@ pub fn strategies(session: &Session<'_>, output: &FigureFolder) -> Result<[[Runs
     Ok([one(PAPER)?, one(B21R)?])
 }
 
-/// Claim 17: some strategies in other worlds; and which of these are maps of map_server.
+/// Runs some strategies in other worlds (claim 17), and returns the names of the maps of map_server
+/// among these worlds.
 pub fn places(session: &Session<'_>, output: &FigureFolder) -> Result<([Runs; 2], Vec<String>)> {
     let series: Series = session.run(worlds(session)?)?;
     let there = series.campaign.worlds.iter().filter(|world| !world.is_left_out());
@@ -123,7 +124,7 @@ pub fn places(session: &Session<'_>, output: &FigureFolder) -> Result<([Runs; 2]
     Ok((both, maps))
 }
 
-/// What stands behind the name of a figure: nothing for the configuration that decides.
+/// Returns the suffix of a figure's name: none for the configuration that decides.
 fn suffix(name: &str) -> String {
     if name == PAPER { String::new() } else { format!("-{name}") }
 }

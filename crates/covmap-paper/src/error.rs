@@ -1,4 +1,4 @@
-//! Why an experiment fails.
+//! Errors of the experiments.
 
 use covmap::{GridError, MapError};
 use covmap_campaign::{CampaignError, RunKey};
@@ -12,13 +12,13 @@ use covmap_world::WorldError;
 use std::num::TryFromIntError;
 use std::path::PathBuf;
 
-/// Why an experiment cannot be done, in one sentence.
+/// Why an experiment fails, in one sentence.
 #[derive(Debug, thiserror::Error)]
 pub enum PaperError {
-    /// A campaign.
+    /// A campaign fails.
     #[error(transparent)]
     Campaign(#[from] CampaignError),
-    /// A world, a configuration, a fit or a run.
+    /// A world, a configuration, a fit or a run fails.
     #[error(transparent)]
     Lab(#[from] LabError),
     /// A file cannot be read or written.
@@ -36,19 +36,19 @@ pub enum PaperError {
     /// A number is too large.
     #[error(transparent)]
     Number(#[from] TryFromIntError),
-    /// Something that the experiments always have is not there.
+    /// A part that the experiments always have is missing.
     #[error("{0} is missing")]
     Missing(&'static str),
-    /// A recorded run comes out otherwise when it is repeated.
-    #[error("{}: {key}: is another run now; remove the folder to run it again", shown(dir))]
+    /// A recorded run differs when it is repeated.
+    #[error("{}: {key}: differs from its record; remove the folder to run it again", shown(dir))]
     OtherRun {
         /// The folder of its campaign.
         dir: PathBuf,
-        /// Which run.
+        /// The key of the run.
         key: Box<RunKey>,
     },
-    /// The audience stopped it.
-    #[error("interrupted; what is done stays, and the same command goes on with it")]
+    /// The audience stopped the experiments.
+    #[error("interrupted; finished runs stay, and the same command continues with them")]
     Interrupted,
 }
 

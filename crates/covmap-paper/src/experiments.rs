@@ -1,4 +1,4 @@
-//! Which campaigns the figures and claims need, and how they are made quick.
+//! The campaigns behind the figures and claims, and their quick variants.
 
 use crate::error::Result;
 use crate::runs::{MOST_COUNTS, Runs, measured_until_explored};
@@ -8,14 +8,14 @@ use covmap_plan::Strategy;
 use std::fmt::Write;
 use std::path::Path;
 
-/// A quick run ends after this number of scans.
+/// The number of scans after which a quick run ends.
 pub(super) const QUICK_SCANS: usize = 1000;
 
-/// The two configurations: the first decides the verdicts.
+/// The names of the two configurations; the first decides the verdicts.
 pub(crate) const PAPER: &str = "paper";
 pub(crate) const B21R: &str = "b21r";
 
-/// The campaign of a figure, from its file; or its quick variant, whose runs are cut short.
+/// Returns the campaign of a figure, from its file, or its quick variant, whose runs are cut short.
 pub(crate) fn campaign(name: &str, quick: bool) -> Result<Campaign> {
     let variant = if quick { "-quick" } else { "" };
     let mut campaign = Campaign::read(Path::new(&format!("configs/{name}{variant}.ron")))?;
@@ -26,8 +26,7 @@ pub(crate) fn campaign(name: &str, quick: bool) -> Result<Campaign> {
 }
 
 impl Series {
-    /// The name of the setting with a configuration that measures at view-points only, or while
-    /// driving.
+    /// Returns the setting of a configuration that measures at view-points only, or while driving.
     pub fn setting(&self, config: &str, driving: bool) -> Option<&Setting> {
         self.campaign.settings.iter().find(|setting| {
             let stem = setting.config.file_stem().unwrap_or_default();
@@ -35,7 +34,7 @@ impl Series {
         })
     }
 
-    /// The runs of such a setting; none if there is none.
+    /// Returns the runs of such a setting; empty if there is no such setting.
     pub fn runs(&self, config: &str, driving: bool) -> Runs {
         let setting = self.setting(config, driving);
         setting.map_or_else(Runs::default, |setting| {
@@ -44,8 +43,9 @@ impl Series {
     }
 }
 
-/// Extended counting with n* of footnote 2, in the worlds and with the settings of Table 1: the
-/// largest discounted number of measurements that a cell had when CL first explored it.
+/// Runs extended counting with n* of footnote 2, in the worlds and with the settings of Table 1.
+///
+/// n* is the largest discounted number of measurements that a cell had when CL first explored it.
 pub(crate) fn n_star(session: &Session<'_>, table_1: &Series) -> Result<Series> {
     let mut campaign = table_1.campaign.clone();
     campaign.name.push_str("-n-star");
@@ -54,21 +54,21 @@ pub(crate) fn n_star(session: &Session<'_>, table_1: &Series) -> Result<Series> 
         let runs = Runs::of(&table_1.campaign, &setting.name, &table_1.records);
         let [_, weight] = measured_until_explored(&runs);
         let times = weight.max(1.0).ceil().min(MOST_COUNTS);
-        // The same count as in Table 1 has been run already.
+        // The count of Table 1 has been run already.
         let times = if (times - 50.0).abs() < 0.5 { 51.0 } else { times };
-        // Counts that change are another campaign, in a folder of its own.
+        // Another count makes another campaign, in a folder of its own.
         let _ = write!(campaign.name, "-{times}");
         let strategy = Strategy::Count { times, half_distance: Some(2.0) };
         settings.push(Setting { strategies: Some(vec![strategy]), ..setting.clone() });
     }
-    // So many scans take long: one seed from every start.
+    // Long runs: one seed from every start.
     campaign.seeds.count = 1;
     campaign.settings = settings;
     campaign.strategies = Vec::new();
     session.run(campaign)
 }
 
-/// The campaign of claim 17, with the worlds that were named.
+/// Returns the campaign of claim 17, with the worlds that the user named.
 pub(crate) fn worlds(session: &Session<'_>) -> Result<Campaign> {
     let mut campaign = campaign("worlds", session.quick)?;
     for (name, file) in session.worlds {
@@ -77,13 +77,13 @@ pub(crate) fn worlds(session: &Session<'_>) -> Result<Campaign> {
     Ok(campaign)
 }
 
-/// All campaigns that are known before any of them is run.
+/// Returns all campaigns that are known before any of them is run.
 pub(crate) fn campaigns(session: &Session<'_>) -> Result<Vec<Campaign>> {
     let named = ["table1", "fig6", "fig7"].map(|name| campaign(name, session.quick));
     named.into_iter().chain([worlds(session), ablated(session)]).collect()
 }
 
-/// What changes when one of our readings does, in a small world.
+/// Runs the ablation in a small world: each setting changes one of our readings.
 pub(crate) fn ablation(session: &Session<'_>) -> Result<Series> {
     session.run(ablated(session)?)
 }
@@ -93,8 +93,8 @@ fn ablated(session: &Session<'_>) -> Result<Campaign> {
     if session.quick {
         campaign.name.push_str("-quick");
         campaign.starts = Starts::Given;
-        // In coarse cells, and cut short, all of them: the settings with fine cells, and those that
-        // run to their end with strategies of their own, would be the first again.
+        // Quick: coarse cells, and all runs cut short. Settings with fine cells, and settings that
+        // run to their end with strategies of their own, would repeat the first setting.
         campaign.settings.retain(|setting| {
             setting.overrides.contains_key("resolution") && setting.strategies.is_none()
         });

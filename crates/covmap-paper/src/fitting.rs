@@ -1,4 +1,4 @@
-//! A fit, checked on worlds that it has not seen (claim 4).
+//! A fit, checked on unseen worlds (claim 4).
 
 use crate::error::Result;
 use crate::session::Session;
@@ -8,29 +8,31 @@ use covmap_statistics::{Estimate, Grouped, bootstrap};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Evaluations of the one search.
+/// The number of evaluations in the one search.
 const EVALUATIONS: usize = 60;
-/// What is enough for a look.
+/// The number of evaluations in a quick search.
 const QUICK_EVALUATIONS: usize = 12;
 const QUICK_SCANS: usize = 15;
 const QUICK_SIDE: f64 = 0.2;
 
-/// So often scenarios are resampled, and with which seed.
+/// The number of resamples of scenarios, and their seed.
 const RESAMPLES: usize = 2000;
 const SEED: u64 = 4;
 
-/// What a fit came to.
+/// The result of a fit.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Fitting {
-    /// The objective on each held-out world, fitted less unfitted \[nats\]: a group for each
-    /// scenario, since another pose of the same scenario is no independent world.
+    /// The objective on each held-out world, fitted less unfitted \[nats\].
+    ///
+    /// Each scenario has a group, because another pose of the same scenario is not an independent
+    /// world.
     pub by_scenario: Grouped<f64>,
-    /// How it was fitted.
+    /// The description of the fit.
     pub what: String,
 }
 
 impl Fitting {
-    /// Fits what a file for `fit` says, with one short search.
+    /// Runs the fit of a file for `fit`, with one short search.
     pub fn measure(path: &Path, session: &Session<'_>) -> Result<Self> {
         let mut plan = FitPlan::read(path)?;
         let file = &mut plan.file;
@@ -72,12 +74,12 @@ impl Fitting {
             ),
         })
     }
-    /// How many held-out worlds there are.
+    /// Returns the number of held-out worlds.
     pub fn worlds(&self) -> usize {
         self.by_scenario.iter().map(Vec::len).sum()
     }
 
-    /// The mean difference over held-out worlds, with its error by resampling scenarios.
+    /// Returns the mean difference over held-out worlds, with its error by resampling scenarios.
     pub fn mean_difference(&self) -> Option<Estimate> {
         bootstrap(&self.by_scenario, RESAMPLES, SEED, |drawn| {
             let n = drawn.len() as f64;

@@ -1,4 +1,4 @@
-//! The little of HTML that a report needs.
+//! The few elements of HTML that a report needs.
 
 use std::fmt::Write;
 
@@ -26,7 +26,7 @@ impl Page {
         let _ = writeln!(self.body, "<p>{}</p>", escaped(text));
     }
 
-    /// A table. A row whose first cell is a verdict's class has its colour.
+    /// Adds a table. A row whose first cell is a verdict's class has the colour of the verdict.
     pub(super) fn table(&mut self, columns: &[&str], rows: &[Vec<String>]) {
         let cells = |tag: &str, cells: &mut dyn Iterator<Item = &str>| {
             let cell = |text: &str| {
@@ -56,9 +56,9 @@ impl Page {
         }
     }
 
-    /// A drawing, as it is.
+    /// Adds a drawing as it is.
     pub(super) fn drawing(&mut self, svg: &str) {
-        // What stands before the drawing is for files.
+        // The text before the drawing is for files only.
         let svg = svg.find("<svg").map_or(svg, |at| &svg[at..]);
         let _ = writeln!(self.body, "<figure>{svg}</figure>");
     }

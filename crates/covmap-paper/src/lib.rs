@@ -1,10 +1,10 @@
 //! Section 5 of Stachniss & Burgard (2003), from runs to verdicts.
 //!
-//! [`paper`] runs the experiments in a [`Session`], with the paper's parameters and with ours, judges the
-//! [claims](claims::all) of section 5 by their [`Evidence`], and writes a report;
+//! [`paper`] runs the experiments in a [`Session`], with the paper's parameters and with ours,
+//! judges the [claims](claims::all) of section 5 by their [`Evidence`], and writes a report.
 //! [`drawing`] makes its figures one by one.
 //!
-//! It reads `configs` and `scenarios` of the repository, from which it is run.
+//! Both read `configs` and `scenarios` of the repository, and must be run from there.
 
 mod built_in;
 pub mod claims;
@@ -44,14 +44,14 @@ use report::Report;
 use std::path::PathBuf;
 use trial::judge;
 
-/// Seeds of each oblique wall.
+/// The number of seeds of each oblique wall.
 const SEEDS: u64 = 4;
 
 /// Runs all experiments, draws all figures, judges all claims, and writes the report.
 ///
 /// # Errors
-/// If anything is wrong with any experiment: then none was run. If something cannot be written, and after
-/// the audience stopped it: what is done stays, and is taken the next time.
+/// If any experiment is invalid: then none has run. If a result cannot be written, or the audience
+/// stopped the experiments: finished runs stay, and the next call continues with them.
 pub fn paper(
     session: &Session<'_>,
     output: &FigureFolder,
@@ -69,12 +69,12 @@ pub fn paper(
     Ok(())
 }
 
-/// The file that says what is fitted to what for a configuration.
+/// Returns the file that defines the fit of a configuration.
 fn fit_file(name: &str) -> PathBuf {
     format!("configs/fit/{name}.ron").into()
 }
 
-/// Finds what is wrong with any experiment before the first one is run.
+/// Checks every experiment before the first one runs.
 fn check(session: &Session<'_>) -> Result<()> {
     for campaign in campaigns(session)? {
         session.check()?;

@@ -12,24 +12,24 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// A run is compared up to this number of scans, if it does not end before.
+/// The largest number of scans up to which runs are compared.
 const SCANS: usize = 2000;
 const QUICK_SCANS: usize = 400;
-/// Cells of this side \[m\], so that it is quick.
+/// The side of the cells \[m\], large to be quick.
 const SIDE: f64 = 0.2;
 
-/// Whether the ends are those of CL and IG.
+/// Whether the ends of IG_CL are CL and IG.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limits {
     /// Whether α = 0 is CL, scan by scan.
     pub zero_is_cl: bool,
     /// Whether α = 10⁹ is IG, scan by scan.
     pub huge_is_ig: bool,
-    /// How they were compared.
+    /// The description of the comparison.
     pub what: String,
 }
 
-/// What a run measured, in order.
+/// The measurements of a run, in order.
 #[derive(Debug, Clone, PartialEq)]
 struct Trace {
     scans: Vec<Scan>,
@@ -37,7 +37,7 @@ struct Trace {
 }
 
 impl Limits {
-    /// Explores a small world with all four.
+    /// Explores a small world with all four strategies.
     pub fn measure(config: &Config, session: &Session<'_>) -> Result<Self> {
         let text = include_str!("../../../scenarios/lab.ron");
         let scenario: Scenario = parse_ron(Path::new("scenarios/lab.ron"), text)?;
@@ -79,7 +79,7 @@ impl Trace {
     }
 }
 
-/// All scans of a run: places, times and ranges to the last bit.
+/// Returns all scans of a run: places, times and ranges to the last bit.
 fn trace(
     world: &World,
     config: &Config,

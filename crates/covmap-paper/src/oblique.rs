@@ -10,9 +10,9 @@ use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use nalgebra::{Isometry2, Point2};
 use rayon::prelude::*;
 
-/// A wall is turned by each of these [°].
+/// The angles by which the walls are turned [°].
 const TURNS: [f64; 6] = [7.0, 12.0, 17.0, 23.0, 29.0, 38.0];
-/// The robot drives past it at this distance \[m\], and measures so often …
+/// The distances at which the robot drives past a wall \[m\]; it measures [`SCANS`] times …
 const AWAY: [f64; 2] = [0.8, 1.2];
 const SCANS: usize = 40;
 /// … over this length \[m\].
@@ -21,6 +21,8 @@ const LENGTH: f64 = 2.0;
 /// repeatedly detect the obstacle".
 const LEAST_ENDS: usize = 5;
 
+/// The measurements on oblique walls.
+///
 /// Each unit is a (distance, seed) with mean occupancy, error of the occupancy, and error of the
 /// expected coverage over the partly covered cells in which readings ended repeatedly; a group is what was measured of one
 /// wall.
@@ -28,11 +30,11 @@ const LEAST_ENDS: usize = 5;
 pub struct Oblique(pub(crate) Units);
 
 impl Oblique {
-    /// The value of the occupancy, by its place.
+    /// The index of the occupancy.
     pub const OCCUPANCY: usize = 0;
-    /// Its error.
+    /// The index of the error of the occupancy.
     pub const OCCUPANCY_ERROR: usize = 1;
-    /// The error of the coverage.
+    /// The index of the error of the coverage.
     pub const COVERAGE_ERROR: usize = 2;
 
     /// Drives past each wall at two distances, with the seeds 1, 2, … `seeds`.
@@ -45,7 +47,7 @@ impl Oblique {
     }
 }
 
-/// A thick wall through the middle of a hall, turned.
+/// Returns a thick, turned wall through the middle of a hall.
 fn wall(turn: f64) -> Scenario {
     let rectangle = Shape::Rectangle { center: (4.0, 4.0), size: (6.0, 0.4), angle: turn };
     Scenario {
@@ -66,7 +68,7 @@ fn unit(config: &Config, turn: f64, away: f64, seed: u64) -> Result<Vec<f64>> {
     let mut ends = Raster::filled(grid, 0);
     for index in 0..SCANS {
         let along = LENGTH * (index as f64 / (SCANS - 1) as f64 - 0.5);
-        // Below the wall, in its own frame.
+        // The robot's way lies below the wall, in the wall's frame.
         let turned = Isometry2::new(nalgebra::Vector2::new(4.0, 4.0), turn);
         let at = turned * Point2::new(along, -0.2 - away);
         let pose = Isometry2::new(at.coords, 0.0);

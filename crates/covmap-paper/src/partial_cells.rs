@@ -1,4 +1,4 @@
-//! The experiment of Fig. 1 and 2: a cell that is covered 20 % is measured again and again.
+//! The experiment of Fig. 1 and 2: a cell with a coverage of 20 % is measured again and again.
 
 use crate::error::Result;
 use covmap::{Cell, CoverageMap, Grid};
@@ -11,14 +11,14 @@ use nalgebra::Point2;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// So often the cell is measured.
+/// The number of measurements of the cell.
 pub(crate) const MEASUREMENTS: usize = 100;
-/// The posterior of Fig. 2 is that after this number of measurements.
+/// The number of measurements before the posterior of Fig. 2.
 pub(crate) const FIG_2: usize = 30;
-/// How much of the cell is covered.
+/// The coverage of the cell.
 pub(crate) const COVERAGE: f64 = 0.2;
 
-/// The side of the cell \[m\], and its lower left corner: the scenarios say so.
+/// The side of the cell \[m\], and its lower left corner, as in the scenarios.
 const SIDE: f64 = 0.1;
 const CORNER: [f64; 2] = [2.5, 2.0];
 
@@ -30,18 +30,18 @@ const CASES: [(char, &str, &str); 4] = [
     ('d', "an oblique wall", include_str!("../../../scenarios/fig1d.ron")),
 ];
 
-/// One way to cover the cell, and what was believed about it.
+/// One way to cover the cell, and the beliefs about it.
 #[derive(Debug, Clone)]
 pub struct PartialCell {
-    /// Its letter.
+    /// The letter of the case.
     pub case: char,
-    /// How it is covered.
+    /// The description of the case.
     pub what: &'static str,
-    /// One for each seed.
+    /// One series for each seed.
     pub series: Vec<Series>,
 }
 
-/// What was believed of the cell after 1, 2, … measurements.
+/// The beliefs about the cell after 1, 2, … measurements.
 #[derive(Debug, Clone, Default)]
 pub struct Series {
     /// The occupancy by unclamped log-odds.
@@ -65,7 +65,7 @@ pub(crate) fn measure(config: &Config, seeds: u64) -> Result<Vec<PartialCell>> {
     CASES.into_iter().map(case).collect()
 }
 
-/// A map of this one cell is updated by the same code as any other.
+/// Measures the one cell; the same code as for any map updates its map.
 fn series(world: &World, config: &Config, seed: u64) -> Result<Series> {
     let (_, model) = config.build()?;
     let grid = Grid::new(Point2::from(CORNER), SIDE, 1, 1)?;
@@ -90,13 +90,13 @@ fn series(world: &World, config: &Config, seed: u64) -> Result<Series> {
 }
 
 impl PartialCell {
-    /// A value of each seed.
+    /// Returns a value of each seed.
     pub fn values(&self, of: impl Fn(&Series) -> f64) -> Vec<f64> {
         self.series.iter().map(of).collect()
     }
 }
 
-/// Mean, 5th and 95th percentile of the values that are numbers.
+/// Returns mean, 5th and 95th percentile of the finite values.
 pub(crate) fn spread(values: &[f64]) -> (f64, f64, f64) {
     let mut values: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     values.sort_by(f64::total_cmp);

@@ -1,14 +1,14 @@
-//! How well the order of strategies in single units agrees with a ranking.
+//! The agreement of the order of strategies in single units with a ranking.
 
 use crate::runs::Units;
 use covmap_statistics::{Estimate, kendall_tau};
 
-/// The mean over units of Kendall's τ between a ranking and the numbers of the unit, with its
-/// error by resampling starts. A unit without any order has a τ of 0.
+/// Returns the mean over units of Kendall's τ between a ranking and the numbers of the unit, with
+/// its error by resampling starts. A unit without any order has a τ of 0.
 ///
-/// A τ goes in steps, one for each pair of strategies that changes places. What is rounded to
-/// steps has a standard deviation of at least step/√12; so has a unit here, or units that are all
-/// alike would be certain.
+/// τ changes in steps, one for each pair of strategies that changes places. A number rounded to
+/// steps has a standard deviation of at least step/√12. A unit has at least this deviation, too;
+/// otherwise units that are all alike would be certain.
 pub(crate) fn mean_tau(ranking: &[f64], units: &Units) -> Option<Estimate> {
     let taus = units.each(|numbers| kendall_tau(ranking, numbers).unwrap_or(0.0));
     let mean = taus.mean(0)?;
@@ -25,7 +25,7 @@ mod tests {
 
     #[test]
     fn every_unit_counts_alike_however_large_its_numbers_are() {
-        // The mean of the numbers is in the order of the ranking, three starts of four are not.
+        // The mean of the numbers follows the order of the ranking; three starts of four do not.
         let unit = |numbers: [f64; 3]| vec![numbers.to_vec()];
         let large = unit([100.0, 200.0, 300.0]);
         let small = || unit([3.0, 2.0, 1.0]);

@@ -1,4 +1,4 @@
-//! The page that says, claim by claim, what came out; and the same for machines.
+//! The page with the result of each claim, and the same results for machines.
 
 use crate::claims::Evidence;
 use crate::error::Result;
@@ -14,7 +14,7 @@ use covmap_io::{MAX_FILE, read_text};
 use serde::Serialize;
 use std::env::consts::{ARCH, OS};
 
-/// All that came out.
+/// All results.
 #[derive(Debug)]
 pub(super) struct Report {
     pub(super) quick: bool,
@@ -23,9 +23,9 @@ pub(super) struct Report {
     pub(super) paper: Evidence,
     pub(super) b21r: Evidence,
     pub(super) ablation: Series,
-    /// What was run, a row for each setting of each campaign.
+    /// The runs, a row for each setting of each campaign.
     pub(super) ran: Vec<Vec<String>>,
-    /// How long it took, without what had been run before.
+    /// The duration \[s\], without earlier runs.
     pub(super) seconds: f64,
 }
 
@@ -37,14 +37,14 @@ struct Line<'a> {
     verdict: Verdict,
     figures: Vec<String>,
     test: Test<'a>,
-    /// The same with b21r.ron; decides nothing.
+    /// The same with b21r.ron, which decides nothing.
     b21r: Second<'a>,
 }
 
 #[derive(Serialize)]
 struct Test<'a> {
     rule: &'static str,
-    /// The p-value, adjusted by Holm over all claims; none where there is no chance.
+    /// The p-value, adjusted by Holm over all claims; none for an exact claim.
     p: Option<f64>,
     trials: &'a [Trial],
 }
@@ -62,7 +62,7 @@ const RULE: &str = "all trials must hold; Student's t on the standard error of a
                     groups that are all alike, decides nothing; Holm over all claims of the \
                     configuration at .05";
 
-/// The figures in the order of the paper; those that are there are shown.
+/// The figures in the order of the paper; the report shows the figures that exist.
 const FIGURES: [(&str, &[&str]); 7] = [
     ("Fig. 1: occupancy and coverage of a cell that is covered 20 %", &["figure1"]),
     ("Fig. 2: its posterior", &["figure2"]),
@@ -79,8 +79,8 @@ const FIGURES: [(&str, &[&str]); 7] = [
     ("Claim 17: other worlds", &["worlds", "worlds-b21r"]),
 ];
 
-/// Removes what an earlier report left in the folder: what is not drawn again must not be shown
-/// as if it were.
+/// Removes the files of an earlier report from the folder, which keeps the report from showing old
+/// figures.
 pub(super) fn clear(output: &FigureFolder) -> Result<()> {
     let figures = FIGURES.iter().flat_map(|(_, names)| names.iter());
     let kinds = |name: &&str| ["svg", "png", "csv"].map(|kind| format!("{name}.{kind}"));
@@ -231,7 +231,8 @@ impl Report {
     }
 }
 
-/// A claim with both configurations; `claims::all` gives both in the same order.
+/// Returns the line of a claim with both configurations; `claims::all` gives both in the same
+/// order.
 fn line<'a>(first: &'a Judged, second: &'a Judged) -> Line<'a> {
     let test =
         |judged: &'a Judged| Test { rule: RULE, p: judged.p, trials: &judged.finding.trials };
@@ -245,7 +246,7 @@ fn line<'a>(first: &'a Judged, second: &'a Judged) -> Line<'a> {
     }
 }
 
-/// What was measured, in words.
+/// Describes the measurements of a claim in words.
 fn figures(judged: &Judged) -> Vec<String> {
     let trial = |trial: &Trial| {
         let value =
@@ -273,7 +274,7 @@ mod tests {
         let mut left: Vec<_> = left.map(|entry| entry.file_name()).collect();
         left.sort();
         assert_eq!(left, [".covmap-files", "mine.svg"]);
-        // What somebody changed is not removed.
+        // A changed file is not removed.
         output.write("worlds.csv", "new").unwrap();
         std::fs::write(output.path("worlds.csv"), "corrected").unwrap();
         assert!(clear(&output).is_err() && output.path("worlds.csv").exists());

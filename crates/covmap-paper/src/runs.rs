@@ -5,7 +5,7 @@ use covmap_plan::Strategy;
 use covmap_statistics::{Estimate, Grouped, bootstrap};
 use std::collections::BTreeMap;
 
-/// So often starts are resampled, and with which seed.
+/// The number of resamples of starts, and their seed.
 const RESAMPLES: usize = 2000;
 const SEED: u64 = 2003;
 
@@ -17,31 +17,33 @@ pub struct Run {
     pub start: usize,
     pub seed: u64,
     pub values: BTreeMap<String, f64>,
-    /// Whether it ended before all was explored.
+    /// Whether the run ended before its world was explored.
     pub cut_short: bool,
 }
 
-/// Runs with the same configuration and the same way to measure.
+/// Runs with the same configuration and the same way of measuring.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Runs {
-    /// In the order of the campaign.
+    /// The runs, in the order of the campaign.
     pub runs: Vec<Run>,
 }
 
-/// One unit of a paired comparison: the same start and seed with several strategies, in their
-/// order. Units are grouped by start.
+/// The units of a paired comparison.
+///
+/// A unit is one start and seed with several strategies, in their order. Units are grouped by
+/// start.
 #[derive(Debug, Clone, Default)]
 pub struct Units(pub(crate) Grouped<Vec<f64>>);
 
 impl Run {
-    /// A number of the run; NaN if it has none of this name.
+    /// Returns a number of the run; NaN if the run has none of this name.
     pub fn value(&self, metric: &str) -> f64 {
         self.values.get(metric).copied().unwrap_or(f64::NAN)
     }
 }
 
 impl Runs {
-    /// The runs of a campaign's setting, from what was recorded.
+    /// Returns the runs of a campaign's setting, from its records.
     pub fn of(campaign: &Campaign, setting: &str, records: &[RunRecord]) -> Self {
         let own = campaign.settings.iter().filter_map(|s| s.strategies.as_ref()).flatten();
         let names: BTreeMap<String, Strategy> =
@@ -64,7 +66,7 @@ impl Runs {
         Self { runs: mine.filter_map(run).collect() }
     }
 
-    /// The worlds, in the order of the campaign.
+    /// Returns the worlds, in the order of the campaign.
     pub fn worlds(&self) -> Vec<String> {
         let mut worlds: Vec<String> = Vec::new();
         for run in &self.runs {
@@ -75,12 +77,12 @@ impl Runs {
         worlds
     }
 
-    /// The runs in one world.
+    /// Returns the runs in one world.
     pub fn in_world(&self, world: &str) -> Self {
         Self { runs: self.runs.iter().filter(|run| run.world == world).cloned().collect() }
     }
 
-    /// The strategies, in the order of the campaign.
+    /// Returns the strategies, in the order of the campaign.
     pub fn strategies(&self) -> Vec<Strategy> {
         let mut strategies: Vec<Strategy> = Vec::new();
         for run in &self.runs {
@@ -91,32 +93,32 @@ impl Runs {
         strategies
     }
 
-    /// The runs of one strategy.
+    /// Returns the runs of one strategy.
     pub fn with(&self, strategy: Strategy) -> impl Iterator<Item = &Run> {
         self.runs.iter().filter(move |run| run.strategy == strategy)
     }
 
-    /// How many runs of one strategy ended before all was explored.
+    /// Returns the number of runs of one strategy that ended before their world was explored.
     pub fn cut_short(&self, strategy: Strategy) -> usize {
         self.with(strategy).filter(|run| run.cut_short).count()
     }
 
-    /// The same in words: of how many.
+    /// Returns this number in words, out of all runs of the strategy.
     pub fn cut_short_of(&self, strategy: Strategy) -> String {
         format!("{} of {}", self.cut_short(strategy), self.with(strategy).count())
     }
 
-    /// The numbers of a metric for one strategy.
+    /// Returns the numbers of a metric for one strategy.
     pub fn values(&self, strategy: Strategy, metric: &str) -> Vec<f64> {
         self.with(strategy).map(|run| run.value(metric)).filter(|v| v.is_finite()).collect()
     }
 
-    /// A metric of several strategies, by unit; units that lack one of them are left out.
+    /// Returns a metric of several strategies, by unit; units that lack a strategy are left out.
     pub fn paired(&self, strategies: &[Strategy], metric: &str) -> Units {
         self.paired_by(strategies, |run| run.value(metric))
     }
 
-    /// A number of the runs of several strategies, by unit.
+    /// Returns a number of the runs of several strategies, by unit.
     pub fn paired_by(&self, strategies: &[Strategy], of: impl Fn(&Run) -> f64) -> Units {
         let mut units: BTreeMap<(usize, &str, u64), Vec<Option<f64>>> = BTreeMap::new();
         for run in &self.runs {
@@ -137,13 +139,13 @@ impl Runs {
 }
 
 impl Units {
-    /// One number for each unit, made of its numbers.
+    /// Returns one number for each unit, computed from its numbers.
     pub fn each(&self, of: impl Fn(&[f64]) -> f64) -> Self {
         let group = |units: &Vec<Vec<f64>>| units.iter().map(|unit| vec![of(unit)]).collect();
         Self(self.0.iter().map(group).collect())
     }
 
-    /// A statistic of the units with its error, by resampling starts.
+    /// Returns a statistic of the units with its error, by resampling starts.
     pub fn estimate(&self, statistic: impl Fn(&[&Vec<f64>]) -> Option<f64>) -> Option<Estimate> {
         bootstrap(
             &self.0,
@@ -155,34 +157,36 @@ impl Units {
         )
     }
 
-    /// The mean of the strategy at a place.
+    /// Returns the mean of the strategy at index `place`.
     pub fn mean(&self, place: usize) -> Option<Estimate> {
         self.estimate(|units| Some(mean(units, place)))
     }
 
-    /// The ratio of two means, that at the place `a` over that at `b`.
+    /// Returns the ratio of two means, the one at index `a` over the one at `b`.
     pub fn ratio(&self, a: usize, b: usize) -> Option<Estimate> {
         self.estimate(|units| Some(mean(units, a) / mean(units, b)))
     }
 
-    /// The mean paired difference, that at the place `a` less that at `b`.
+    /// Returns the mean paired difference, the value at index `a` less the one at `b`.
     pub fn difference(&self, a: usize, b: usize) -> Option<Estimate> {
         self.estimate(|units| Some(mean(units, a) - mean(units, b)))
     }
 }
 
-/// The mean over units of what is at a place.
+/// Returns the mean over units of the value at index `place`.
 pub(crate) fn mean(units: &[&Vec<f64>], place: usize) -> f64 {
     let n = units.len() as f64;
     units.iter().map(|unit| unit[place]).sum::<f64>() / n
 }
 
-/// A run for tests: strategy, start, seed and numbers by name.
-/// Extended counting with n* is done up to this at most: four times the paper's 130.
+/// The cap on n* for extended counting: four times the paper's 130.
 pub(crate) const MOST_COUNTS: f64 = 520.0;
 
-/// The largest number of measurements that a cell had in any run of CL when it first fulfilled
-/// H ≤ ε, and the largest with the discount of extended counting; 0 without runs.
+/// Returns the largest number of measurements, plain and discounted, of a cell that first fulfilled
+/// H ≤ ε.
+///
+/// Both are maxima over all runs of CL, the second with the discount of extended counting; 0
+/// without runs.
 pub(crate) fn measured_until_explored(runs: &Runs) -> [f64; 2] {
     let most = |metric: &str| runs.values(Strategy::Cl, metric).into_iter().fold(0.0, f64::max);
     [most("measurements.until_explored"), most("measurements.until_explored_discounted")]
@@ -191,7 +195,7 @@ pub(crate) fn measured_until_explored(runs: &Runs) -> [f64; 2] {
 #[cfg(test)]
 pub(crate) type Row<'a> = (&'a str, usize, u64, &'a [(&'a str, f64)]);
 
-/// Runs for tests.
+/// Returns runs for tests.
 #[cfg(test)]
 pub(crate) fn made_up(rows: &[Row<'_>]) -> Runs {
     let run = |(strategy, start, seed, values): &Row<'_>| Run {
@@ -205,8 +209,10 @@ pub(crate) fn made_up(rows: &[Row<'_>]) -> Runs {
     Runs { runs: rows.iter().map(run).collect() }
 }
 
-/// A series for tests: for each strategy and metric a mean, with a small spread over four starts
-/// and two seeds, and a smaller one that neither strategies nor metrics share.
+/// Returns a series for tests: for each strategy and metric, a mean with a small spread over four
+/// starts and two seeds.
+///
+/// A second, smaller spread is shared by neither strategies nor metrics.
 #[cfg(test)]
 pub(crate) fn series(strategies: &[(&str, &[(&str, f64)])]) -> Runs {
     const OWN: [[f64; 4]; 3] =

@@ -1,4 +1,4 @@
-//! How the experiments are run: where, how many at a time, and how thoroughly.
+//! The session of the experiments: their folder, their parallel runs, and their thoroughness.
 
 use crate::error::{PaperError, Result};
 use covmap_campaign::{Campaign, Options, RunRecord, Seeds, Setting, Shard, Starts, Step, run};
@@ -7,18 +7,19 @@ use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 
-/// What is told each step of a campaign.
+/// The receiver of each step of a campaign.
 pub type Steps<'a> = dyn Fn(&Step) + Sync + 'a;
 
-/// Who started the experiments, is told how far they are, and may end them.
+/// The caller of the experiments, which receives their progress and may stop them.
 pub trait Audience: Watch {
-    /// Is told something to be remembered.
+    /// Receives a message that stays.
     fn line(&self, text: &str);
 
-    /// Starts a campaign, and looks at its steps.
+    /// Starts a campaign, and observes its steps.
     fn campaign(&self, name: &str, run: &mut dyn FnMut(&Steps<'_>));
 
-    /// Whether the work is to end; asked between two parts, of which the next one may not ask.
+    /// Returns whether the work is to end; asked between two parts, because the next part may not
+    /// ask.
     fn is_stopped_between(&self) -> bool {
         self.is_stopped()
     }
@@ -26,31 +27,31 @@ pub trait Audience: Watch {
 
 /// A series of experiments.
 pub struct Session<'a> {
-    /// Whether it is a look instead of a result.
+    /// Whether the session is quick, for a look instead of a result.
     pub quick: bool,
-    /// Who looks on.
+    /// The observer.
     pub watch: &'a dyn Audience,
-    /// Worlds of the campaign of other worlds that are taken from files.
+    /// Worlds of the campaign of other worlds that come from files.
     pub worlds: &'a [(String, PathBuf)],
     jobs: NonZeroUsize,
     out: PathBuf,
-    /// What was run: a row for each setting of each campaign.
+    /// The runs so far: a row for each setting of each campaign.
     ran: Mutex<Vec<Vec<String>>>,
 }
 
-/// A campaign that was run.
+/// A finished campaign.
 #[derive(Debug)]
 pub struct Series {
-    /// What it is.
+    /// The campaign.
     pub campaign: Campaign,
-    /// Its folder.
+    /// The folder of the campaign.
     pub dir: PathBuf,
-    /// What was recorded.
+    /// The records of its runs.
     pub records: Vec<RunRecord>,
 }
 
 impl<'a> Session<'a> {
-    /// Experiments whose results go into a folder, so many runs at a time.
+    /// Makes a session with a folder for results, and `jobs` runs at a time.
     pub fn new(
         out: PathBuf,
         jobs: NonZeroUsize,
@@ -61,25 +62,25 @@ impl<'a> Session<'a> {
         Self { quick, watch, worlds, jobs, out, ran: Mutex::default() }
     }
 
-    /// Where results go.
+    /// Returns the folder for results.
     pub fn out(&self) -> &Path {
         &self.out
     }
 
-    /// The number of runs at the same time.
+    /// Returns the number of runs at the same time.
     pub fn jobs(&self) -> NonZeroUsize {
         self.jobs
     }
 
-    /// The folder of a campaign.
+    /// Returns the folder of a campaign.
     pub fn folder(&self, campaign: &Campaign) -> PathBuf {
         self.out.join("campaigns").join(&campaign.name)
     }
 
-    /// Runs what is missing of a campaign.
+    /// Runs the missing runs of a campaign.
     ///
     /// # Errors
-    /// If it is wrong or cannot be written, and after Ctrl-C.
+    /// If the campaign is invalid or cannot be written, and after Ctrl-C.
     pub fn run(&self, campaign: Campaign) -> Result<Series> {
         let dir = self.folder(&campaign);
         self.tell(&format!("{}: {}", campaign.name, dir.display()));
@@ -96,17 +97,17 @@ impl<'a> Session<'a> {
         Ok(Series { campaign, dir, records })
     }
 
-    /// Says that something else takes time now.
+    /// Reports that another task takes time now.
     pub fn tell(&self, text: &str) {
         self.watch.line(text);
     }
 
-    /// What was run, for the report: a row for each setting of each campaign.
+    /// Returns the runs so far, for the report: a row for each setting of each campaign.
     pub fn ran(&self) -> Vec<Vec<String>> {
         self.ran.lock().map(|ran| ran.clone()).unwrap_or_default()
     }
 
-    /// An error after Ctrl-C: what is done stays, and is taken the next time.
+    /// Returns an error after Ctrl-C; finished runs stay, and the next session uses them.
     pub fn check(&self) -> Result<()> {
         if self.watch.is_stopped_between() { Err(PaperError::Interrupted) } else { Ok(()) }
     }

@@ -1,4 +1,4 @@
-//! Tables of the report beyond the paper's: accuracy, cost, and what each reading does.
+//! Tables of the report beyond the paper's: accuracy, cost, and the effect of each reading.
 
 use crate::runs::Runs;
 use crate::session::Series;
@@ -8,8 +8,8 @@ use covmap_plan::Strategy;
 /// A table with its columns.
 pub(super) type Table = (Vec<&'static str>, Vec<Vec<String>>);
 
-/// How accurate the final maps are, against the exact truth, over the same cells for all runs in a
-/// world.
+/// Returns the accuracy of the final maps against the exact truth, over the same cells for all runs
+/// in a world.
 pub(super) fn accuracy(runs: &Runs) -> Table {
     let metrics = [
         ("log-likelihood [nats]", "log_likelihood_observable"),
@@ -27,7 +27,7 @@ pub(super) fn accuracy(runs: &Runs) -> Table {
     of_metrics(runs, &metrics)
 }
 
-/// What a run costs, and what a scan and a metre bring.
+/// Returns the cost of a run, and the gain of a scan and of a metre.
 pub(super) fn cost(runs: &Runs) -> Table {
     let columns = [
         "strategy",
@@ -62,7 +62,7 @@ pub(super) fn cost(runs: &Runs) -> Table {
     (columns.to_vec(), runs.strategies().iter().map(row).collect())
 }
 
-/// What becomes of the runs when one reading changes.
+/// Returns the changes of the runs when one reading changes.
 pub(super) fn ablation(series: &Series) -> Table {
     let columns = [
         "setting",

@@ -1,4 +1,4 @@
-//! What the experiments compare, and by which numbers of a run.
+//! The techniques that the experiments compare, and the numbers of a run that compare them.
 
 use covmap_plan::Strategy;
 
@@ -11,5 +11,5 @@ pub(crate) const ONCE: Strategy = Strategy::Count { times: 1.0, half_distance: N
 pub(crate) const SCANS: &str = "scans";
 /// The length of the path \[m\].
 pub(crate) const PATH: &str = "path_length_m";
-/// The share of what could be seen that is known.
+/// The known share of the cells that could be seen.
 pub(crate) const COMPLETENESS: &str = "completeness";

@@ -1,15 +1,15 @@
-//! A number against its threshold, and what follows for a claim.
+//! A number against its threshold, and the verdict on a claim.
 
 use covmap_statistics::{Estimate, holm};
 use serde::Serialize;
 use std::fmt;
 
-/// What a number must be for a claim to hold.
+/// The bound on a number for a claim to hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Bound {
-    /// Less than a number.
+    /// At most a number.
     Below(f64),
-    /// More than a number.
+    /// At least a number.
     Above(f64),
     /// Between two numbers.
     Between(f64, f64),
@@ -18,65 +18,67 @@ pub enum Bound {
 /// One test of a claim.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Trial {
-    /// Which number.
+    /// The name of the number.
     pub what: String,
-    /// The number; none if there are no data, or it is a fact.
+    /// The number; `None` if there are no data, or the test is of a fact.
     pub value: Option<f64>,
-    /// Its 95 % interval.
+    /// The 95 % interval of the number.
     pub interval: Option<(f64, f64)>,
-    /// What it must be.
+    /// The bound on the number.
     pub bound: String,
-    /// How likely data like these are if the number is not so: small speaks for the claim.
+    /// The p-value of data like these if the number violates the bound; a small value supports the
+    /// claim.
     pub p_holds: f64,
-    /// How likely data like these are if it is so: small speaks against the claim.
+    /// The p-value of data like these if the number keeps the bound; a small value contradicts the
+    /// claim.
     pub p_fails: f64,
     /// The number of independent groups it rests on; none for a fact.
     pub groups: Option<usize>,
     /// The number of groups at which the test would decide with a power of 80 %, at the level of the first
     /// step of Holm's correction over 20 claims, if the number is as it was measured.
     pub groups_needed: Option<f64>,
-    /// Whether there is no chance in it.
+    /// Whether the test involves no chance.
     pub exact: bool,
-    /// Why the number decides nothing, or what else there is to say of it.
+    /// Why the number decides nothing, or a further remark.
     pub reason: Option<String>,
 }
 
 /// A claim with all its tests.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finding {
-    /// Its number in the list.
+    /// The claim's number in the list.
     pub claim: u32,
-    /// What it says.
+    /// The claim's statement.
     pub statement: &'static str,
-    /// All of them must hold.
+    /// The tests, which must all hold.
     pub trials: Vec<Trial>,
     /// Figures beside the tests, which decide nothing.
     pub notes: Vec<String>,
 }
 
-/// What came out.
+/// The result of a claim.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 pub enum Verdict {
     #[serde(rename = "reproduced")]
-    /// It holds.
+    /// The claim holds.
     Reproduced,
     #[serde(rename = "not reproduced")]
-    /// It does not hold.
+    /// The claim does not hold.
     NotReproduced,
     #[serde(rename = "undecided")]
-    /// The data do not tell.
+    /// The data do not decide the claim.
     Undecided,
 }
 
 /// A claim with its verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Judged {
-    /// What was judged.
+    /// The finding.
     pub finding: Finding,
-    /// What it came to.
+    /// The verdict.
     pub verdict: Verdict,
-    /// The p-value behind it, adjusted by Holm over all claims of the column; none if there is
-    /// no chance in it.
+    /// The p-value of the verdict, adjusted by Holm over all claims of the column; `None` for an
+    /// exact claim.
     pub p: Option<f64>,
 }
 
@@ -88,11 +90,11 @@ const POWER: f64 = 0.8;
 const CLAIMS: f64 = 20.0;
 /// A number that rests on fewer independent groups than this decides nothing.
 const FEWEST_GROUPS: usize = 3;
-/// A standard error below this part of the number is rounding.
+/// A standard error below this share of the number is rounding.
 const ROUNDING: f64 = 1e-12;
 
 impl Trial {
-    /// A number with its error. Without data nothing is decided.
+    /// Makes a test of a number with its error. Without data nothing is decided.
     pub fn new(what: impl Into<String>, estimate: Option<Estimate>, bound: Bound) -> Self {
         let reason = estimate.map_or(Some("no data".to_owned()), |e| says_nothing(&e));
         let p = |e: Estimate| match bound {
@@ -115,14 +117,15 @@ impl Trial {
         }
     }
 
-    /// A number of which only the ends are known between which it lies, and that must not exceed
-    /// a limit: its upper end speaks for the claim, its lower end against it.
+    /// Makes a test of a number between known ends, which must not exceed a limit.
+    ///
+    /// The upper end speaks for the claim, the lower end against it.
     pub fn between_ends(what: impl Into<String>, ends: Option<[Estimate; 2]>, limit: f64) -> Self {
         let end = |at: usize| Self::new("", ends.map(|ends| ends[at]), Bound::Below(limit));
         Self { what: what.into(), p_fails: end(0).p_fails, ..end(1) }
     }
 
-    /// Says more about it.
+    /// Adds a remark.
     pub fn saying(self, reason: Option<String>) -> Self {
         let reasons: Vec<String> = self.reason.into_iter().chain(reason).collect();
         Self { reason: (!reasons.is_empty()).then(|| reasons.join("; ")), ..self }
@@ -133,7 +136,7 @@ impl Trial {
         Self { what: format!("{world}: {}", self.what), ..self }
     }
 
-    /// Something that is so or is not.
+    /// Makes a test of a fact.
     pub fn fact(what: impl Into<String>, holds: bool) -> Self {
         Self {
             what: what.into(),
@@ -149,20 +152,21 @@ impl Trial {
         }
     }
 
-    /// Something without which the runs say nothing about the claim: it can leave a claim
+    /// Makes a condition without which the runs say nothing about the claim: it can leave a claim
     /// undecided, but not refute it.
     pub fn condition(what: impl Into<String>, holds: bool) -> Self {
         Self { p_fails: 1.0, ..Self::fact(what, holds) }
     }
 
-    /// A test that cannot speak against the claim: what is not confirmed is undecided.
+    /// Returns a test that cannot speak against the claim: a claim that is not confirmed is
+    /// undecided.
     pub fn confirming(self) -> Self {
         Self { p_fails: 1.0, ..self }
     }
 }
 
 impl Finding {
-    /// A claim whose tests must all hold.
+    /// Makes a finding of a claim whose tests must all hold.
     pub fn new(claim: u32, statement: &'static str, trials: Vec<Trial>) -> Self {
         Self { claim, statement, trials, notes: Vec::new() }
     }
@@ -180,13 +184,13 @@ impl Finding {
         self.note(format!("{what}: {text}"))
     }
 
-    /// The p-value that the claim holds: all tests must (the largest counts).
+    /// Returns the p-value for the claim: all tests must hold, and the largest p-value counts.
     fn p_holds(&self) -> f64 {
         self.trials.iter().map(|trial| trial.p_holds).fold(0.0, f64::max)
     }
 
-    /// The p-value that it does not: one test is enough, which costs as many chances as there
-    /// are tests.
+    /// Returns the p-value against the claim: one failed test is enough, at the price of as many
+    /// chances as there are tests.
     fn p_fails(&self) -> f64 {
         let chances = self.trials.iter().filter(|trial| !trial.exact).count().max(1) as f64;
         let p = |trial: &Trial| if trial.exact { trial.p_fails } else { chances * trial.p_fails };
@@ -197,15 +201,18 @@ impl Finding {
         self.trials.iter().all(|trial| trial.exact)
     }
 
-    /// Whether a condition is not met: then nothing is decided, whatever the other tests say.
+    /// Returns whether a condition is not met: then nothing is decided, whatever the other tests
+    /// say.
     fn is_void(&self) -> bool {
         self.trials.iter().any(|t| t.exact && t.p_holds >= 1.0 && t.p_fails >= 1.0)
     }
 }
 
-/// Judges all claims of a column: a claim is *reproduced* if the hypothesis that one of its
-/// tests does not hold is rejected, *not reproduced* if the hypothesis that all hold is, each
-/// with Holm's correction over all claims in which there is chance, and else *undecided*.
+/// Judges all claims of a column.
+///
+/// A claim is *reproduced* if the hypothesis that one of its tests does not hold is rejected, and
+/// *not reproduced* if the hypothesis that all of them hold is rejected. Both use Holm's correction
+/// over all claims that involve chance. Any other claim is *undecided*.
 pub fn judge(findings: Vec<Finding>) -> Vec<Judged> {
     let two_sided = |f: &Finding| {
         let p = 2.0 * f.p_holds().min(f.p_fails());
@@ -238,8 +245,8 @@ fn needed(estimate: &Estimate, bound: Bound) -> Option<f64> {
     }
 }
 
-/// Why an estimate must not decide: it rests on too few groups, or these are all alike, so that
-/// its error is not known.
+/// Returns why an estimate must not decide: it rests on too few groups, or its groups are all
+/// alike, and its error is unknown.
 fn says_nothing(estimate: &Estimate) -> Option<String> {
     let Estimate { value, standard_error, groups } = *estimate;
     if groups < FEWEST_GROUPS {
@@ -274,7 +281,7 @@ impl fmt::Display for Verdict {
     }
 }
 
-/// A number with its interval as a reader sees it.
+/// Returns a number with its interval, as shown to a reader.
 pub fn shown(value: Option<f64>, interval: Option<(f64, f64)>) -> String {
     match (value, interval) {
         (Some(value), Some((low, high))) => {
@@ -285,7 +292,7 @@ pub fn shown(value: Option<f64>, interval: Option<(f64, f64)>) -> String {
     }
 }
 
-/// A number to three or four digits.
+/// Returns a number to three or four digits.
 pub fn digits(value: f64) -> String {
     match value.abs() {
         size if !size.is_finite() => "–".to_owned(),
@@ -367,7 +374,7 @@ mod tests {
 
     #[test]
     fn many_claims_pay_for_each_other() {
-        // p = .013 each, two-sided .026: one alone is decided, twenty are not.
+        // p = .013 each, two-sided .026: a single claim is decided, twenty are not.
         let weak = || finding(vec![at(0.85, 0.048)]);
         assert_eq!(judge(vec![weak()])[0].verdict, Verdict::Reproduced);
         let many = judge((0..20).map(|_| weak()).collect());

@@ -1,4 +1,4 @@
-//! Draws a half-known room by hand, and shows what three strategies choose in it, and why.
+//! Draws a half-known room by hand, and explains the choices of three strategies in it.
 //!
 //! ```text
 //! cargo run -p covmap-plan --example explain_a_decision
@@ -12,7 +12,7 @@ use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
 use std::error::Error;
 
-/// `#` surely solid, `.` surely free, `?` probably free, a space is unknown; r = 0.2 m.
+/// `#` is surely solid, `.` surely free, `?` probably free, a space unknown; r = 0.2 m.
 const ROOM: [&str; 12] = [
     "####################  ",
     "#.................??  ",
@@ -35,7 +35,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut changes = Vec::new();
     for (y, row) in (0..).zip(ROOM.iter().rev()) {
         for (x, sign) in (0..).zip(row.chars()) {
-            // How likely the other bins are, and which bin is not one of them.
+            // The likelihood of the other bins, and the bin with likelihood 1.
             let (others, bin) = match sign {
                 '#' => (0.01, 10),
                 '.' => (0.01, 0),

@@ -1,4 +1,4 @@
-//! What the planner says of the cells: the certificate, what it can reach, and counts for progress.
+//! The planner's reports on the cells: the certificate, the reach, and counts for progress.
 
 use crate::exploration::InSight;
 use crate::{CellStatus, Planner, Reach, Scope, travel_costs};
@@ -6,23 +6,25 @@ use covmap::{Cell, CoverageMap, Raster, neighbour};
 use covmap_gain::ViewPoints;
 use serde::{Deserialize, Serialize};
 
-/// A known cell of at least this coverage ends what may still come into sight.
+/// Least coverage with which a known cell hides the cells behind it from future scans.
 const OPAQUE: f64 = 0.5;
 
-/// What one more scan could change about a cell.
+/// The largest expected change of a cell by one more scan.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Promise {
-    /// The most that its entropy is expected to fall by, by one beam from one of the places that can be
-    /// reached: Σ_d p(d | c) · I(h | d) \[nats\].
+    /// The largest expected fall of the cell's entropy by one beam from a reachable view-point:
+    /// Σ_d p(d | c) · I(h | d) \[nats\].
     pub change: f64,
-    /// The view-point that promises it.
+    /// The view-point that promises this change.
     pub from: Cell,
 }
 
 impl Planner {
-    /// For every cell what one more scan, from any place that a robot in the cell `from` can reach, is
-    /// expected to change most; `None` for cells that cannot be measured, and for all with the product
-    /// of Eq. (9). An exhausted cell is given up because this is little.
+    /// Returns the largest expected change of each cell by one more scan.
+    ///
+    /// The scan may be taken from any view-point that a robot in the cell `from` can reach. `None` for cells
+    /// that cannot be measured, and for all cells with the product of Eq. (9). An exhausted cell is given up
+    /// because its expected change is small.
     ///
     /// # Panics
     /// If the robot's cell lies outside of the grid.
@@ -36,8 +38,8 @@ impl Planner {
         })
     }
 
-    /// What became of every cell, for a robot in the cell `from`: explored means that none
-    /// is [`CellStatus::Open`].
+    /// Returns the status of each cell, for a robot in the cell `from`. The environment is explored
+    /// if no cell is [`CellStatus::Open`].
     ///
     /// # Panics
     /// If the robot's cell lies outside of the grid.
@@ -74,7 +76,7 @@ impl Planner {
         certificate
     }
 
-    /// Whether a cell is a reason to measure from so far away, for IG_WIN in closed windows, too.
+    /// Whether a cell is a reason to measure from this distance \[m\]; for IG_WIN also in closed windows.
     fn is_open_reason(&self, map: &CoverageMap, index: usize, distance: f32) -> bool {
         if self.window.is_none() {
             return self.is_reason(index, distance);
@@ -83,9 +85,10 @@ impl Planner {
         distance <= self.exploration.limit(index, map.is_known(cell), map.entropy(cell))
     }
 
-    /// Of a run that is not over, tells cells that may come into sight from those that are out of
-    /// sight for good: what hangs together with places in reach, over cells that are not known to
-    /// be covered, and what ends it.
+    /// Marks the unreachable cells that may still come into sight, in a run that is not over.
+    ///
+    /// These are the cells connected to a reachable cell over cells that are not known to be covered,
+    /// and the cells at which such a connection ends.
     fn mark_not_seen(
         &self,
         map: &CoverageMap,
@@ -96,7 +99,7 @@ impl Planner {
         front.iter().for_each(|index| seen[*index] = true);
         while let Some(at) = front.pop() {
             let cell = self.grid.cell(at);
-            // By the paper's words, what is known and no place to stand is out of scope for good.
+            // In the paper's words, a known cell where the robot cannot stand is out of scope for good.
             let in_scope =
                 self.parameters().scope_of_strategy() == Scope::Observable || !map.is_known(cell);
             if certificate[at] == CellStatus::Unreachable && in_scope {
@@ -114,7 +117,7 @@ impl Planner {
         }
     }
 
-    /// Where a robot in the cell `from` can drive, and what keeps it from all else.
+    /// Returns for each cell whether a robot in the cell `from` can drive there, and if not, the obstacle.
     pub fn reach(&self, from: Cell) -> Raster<Reach> {
         let reached = self.traversable.steps().reached(self.grid.index(from));
         Raster::from_fn(self.grid, |cell| match self.grid.index(cell) {
@@ -123,8 +126,8 @@ impl Planner {
         })
     }
 
-    /// How many known cells are still open: neither resolved nor given up, whether or not they can
-    /// be seen from where the robot can go; cheap, for progress.
+    /// Returns the number of known cells that are neither resolved nor given up, whether or not they
+    /// are in sight of a reachable view-point. Cheap, for progress.
     pub fn open_cells(&self, map: &CoverageMap) -> usize {
         let is_open = |index: &usize| {
             let cell = self.grid.cell(*index);
@@ -135,18 +138,18 @@ impl Planner {
         (0..self.grid.len()).filter(is_open).count()
     }
 
-    /// How many cells were given up by the cap on counted scans.
+    /// Returns the number of cells given up by the cap on counted scans.
     pub fn capped_cells(&self) -> usize {
         self.exploration.capped_cells()
     }
 
-    /// How many scans were counted for each cell.
+    /// Returns the number of scans counted for each cell.
     pub fn counted_scans(&self) -> Raster<u32> {
         self.exploration.counted_scans(self.grid)
     }
 
-    /// Whether all that a robot in the cell `from` can reach is nearer to one of these places than the
-    /// robot is wide: it is shut in.
+    /// Whether a robot in the cell `from` is shut in: one of the cells that it can reach is nearer to all
+    /// others than the robot is wide.
     pub fn is_confined(&self, from: Cell) -> bool {
         let reached = self.traversable.steps().reached(self.grid.index(from));
         let reached: Vec<usize> = (0..self.grid.len()).filter(|i| reached[*i]).collect();

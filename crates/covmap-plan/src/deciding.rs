@@ -1,8 +1,8 @@
-//! Which gains decide: all candidates are bounded, and those evaluated that may be the best.
+//! The gains that decide: the planner bounds all candidates, and evaluates those that may be the best.
 //!
-//! The bounds are found on probes and not proven ([`covmap_gain::GainCache::refresh_bounds`]). Where a gain that is
-//! evaluated is above its bound, all candidates are evaluated; a candidate that was passed over
-//! because its bound is too low, while all that were evaluated keep theirs, stays passed over.
+//! The bounds are measured on probes and not proven ([`covmap_gain::GainCache::refresh_bounds`]). If an
+//! evaluated gain exceeds its bound, the planner evaluates all candidates. If none does, a candidate that
+//! was left out because its bound is too low stays left out.
 
 use crate::decision::{Contest, REPORTED};
 use crate::parameters::LeastChange;
@@ -11,13 +11,13 @@ use covmap::CoverageMap;
 use covmap_gain::{BeamStencil, GAIN_TOLERANCE, ViewPoints, expected_changes};
 use rayon::prelude::*;
 
-/// The number of candidates that are evaluated first; it doubles whenever that was not enough. To
-/// evaluate a few more costs less than another turn.
+/// Largest number of candidates evaluated in the first turn; it doubles with each turn, as a few more
+/// evaluations cost less than another turn.
 const FIRST: usize = 64;
 
 impl Planner {
-    /// Passes over candidates until the best ones promise enough. With that the order of the strategy is
-    /// kept: who is passed over would have been chosen, and measured in vain.
+    /// Passes over candidates until the best ones promise enough. This keeps the order of the strategy:
+    /// only candidates from which a scan would be in vain are passed over.
     pub(crate) fn fill_and_pass_over(
         &mut self,
         map: &CoverageMap,
@@ -47,16 +47,16 @@ impl Planner {
         }
     }
 
-    /// The places of candidates whose promise, or its bound, is not enough; none where cells are not told
-    /// apart.
+    /// The places of the candidates whose promise, or its bound, is not enough; none if the gains do not
+    /// tell the cells apart.
     fn known_in_vain(&self, contest: &Contest<'_>, least: LeastChange) -> Vec<usize> {
         let index = |place: &usize| self.grid.index(contest.records[*place].cell);
         let is_in_vain = |i: usize| self.gains.promise(i) < least.scan;
         contest.left().filter(|place| index(place).is_some_and(is_in_vain)).collect()
     }
 
-    /// Of the best, the places of those that are evaluated and do not promise enough by the literal
-    /// equations, which are too slow to ask them of all.
+    /// The places of the best candidates that are evaluated and do not promise enough by the literal
+    /// equations, which are too slow for all candidates.
     fn best_in_vain(
         &self,
         map: &CoverageMap,
@@ -89,8 +89,8 @@ impl Planner {
         *candidates = candidates.par_iter().copied().filter(promises).collect();
     }
 
-    /// Whether a scan from a view-point, whose gain is up to date, is expected to tell enough about the
-    /// cells that are reasons to go there.
+    /// Whether a scan from a view-point is expected to tell enough about the cells that are reasons to go
+    /// there. The gain of the view-point must be up to date.
     pub(crate) fn promises(&self, map: &CoverageMap, index: usize, least: LeastChange) -> bool {
         if self.gains.tells_cells_apart() {
             return self.gains.promise(index) >= least.scan;
@@ -110,16 +110,16 @@ impl Planner {
         stencil.beams.iter().map(of_beam).sum::<f64>() >= least.scan
     }
 
-    /// Fills in the scores of all records, with the gains of those that may have the largest gain,
-    /// and may be among the best reported; for the others, with an upper bound in place of the
-    /// gain. So whatever is close to the best by less than what the fast gains are off is evaluated.
+    /// Fills in the scores of all records: with the gains of those that may have the largest gain or
+    /// may be among the best reported, with upper bounds for the others. Every candidate whose distance
+    /// to the best is within the error of the fast gains is evaluated.
     fn fill_deciding_gains(&mut self, contest: &mut Contest<'_>) {
         let all = self.view_points(&contest.records);
         self.take_gains(contest);
         let uses_gain = contest.scoring.uses_gain();
         self.gains.take_exceeded();
         if uses_gain && !contest.needs_all_gains() {
-            // Eq. (16) divides by the largest gain, as does what is told of IG: this one first.
+            // Eq. (16) divides by the largest gain, as does the report of IG: the largest comes first.
             let largest = |contest: &Contest<'_>| {
                 let gains = contest.records.iter().map(|r| r.gain.abs());
                 GAIN_TOLERANCE * gains.fold(0.0, f64::max)
@@ -140,8 +140,8 @@ impl Planner {
         }
     }
 
-    /// Evaluates until no bound is among the `count` largest by a `key`, nor closer to them than
-    /// both may be `off`.
+    /// Evaluates records until no bound is among the `count` largest by a `key`, or within the error
+    /// `off` of both.
     fn settle(
         &mut self,
         contest: &mut Contest<'_>,
@@ -168,7 +168,7 @@ impl Planner {
         }
     }
 
-    /// Evaluates some records' gains, and those of their neighbours: side by side they cost nothing.
+    /// Evaluates the gains of some records and of their neighbours, which cost nothing extra.
     fn evaluate(&mut self, records: &[CandidateRecord], places: &[usize], all: &ViewPoints) {
         let mut wanted = ViewPoints::new(&self.grid);
         let indices = places.iter().filter_map(|i| self.grid.index(records[*i].cell));
@@ -176,7 +176,7 @@ impl Planner {
         self.gains.refresh_gains(&wanted);
     }
 
-    /// Fills in gains, or bounds, and scores. Returns which are gains.
+    /// Fills in gains or bounds, and scores. Returns for each record whether it holds a gain.
     fn take_gains(&self, contest: &mut Contest<'_>) -> Vec<bool> {
         let weighs = contest.scoring.uses_gain();
         let take = |record: &mut CandidateRecord| {
@@ -191,8 +191,8 @@ impl Planner {
     }
 }
 
-/// The places of the records with a bound that may be among the `count` largest by a `key`, if both
-/// that and the keys of gains may be `off`. Without a key, −∞, a record does not take part.
+/// The places of the records with a bound that may be among the `count` largest by a `key`, if the
+/// keys of bounds and of gains may both be `off`. A record with the key −∞ does not take part.
 fn in_doubt(
     records: &[CandidateRecord],
     is_exact: &[bool],

@@ -3,10 +3,10 @@
 use crate::{CandidateRecord, Scoring, Situation};
 use covmap_gain::GAIN_TOLERANCE;
 
-/// How many candidates a decision reports.
+/// The number of candidates that a decision reports.
 pub(crate) const REPORTED: usize = 5;
 
-/// How the strategies of the paper score candidates.
+/// The scores of the paper's strategies.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Score {
     /// argmin d_c, Eq. (12).
@@ -70,8 +70,8 @@ impl Scoring for Score {
     }
 }
 
-/// The candidates of a decision, in row-major order of cells, and which of them are passed over:
-/// they count for the maxima of Eq. (16), but are not chosen.
+/// The candidates of a decision, in row-major order of cells. Candidates that are passed over count
+/// for the maxima of Eq. (16), but are not chosen.
 pub(crate) struct Contest<'a> {
     pub(crate) records: Vec<CandidateRecord>,
     pub(crate) scoring: &'a mut dyn Scoring,
@@ -91,7 +91,7 @@ impl<'a> Contest<'a> {
         contest
     }
 
-    /// Scores anew.
+    /// Scores the candidates anew.
     pub(crate) fn apply(&mut self) {
         self.scoring.score(&self.situation, &mut self.records);
         for (record, passed_over) in self.records.iter_mut().zip(&self.passed_over) {
@@ -101,7 +101,7 @@ impl<'a> Contest<'a> {
         }
     }
 
-    /// How much a score may be off by what the fast gains are off; 0 where all of them are evaluated.
+    /// The error of a score that follows from the error of the fast gains; 0 if all gains are evaluated.
     pub(crate) fn uncertainty(&self) -> f64 {
         self.scoring.uncertainty(&self.records, GAIN_TOLERANCE).unwrap_or(0.0)
     }
@@ -117,12 +117,12 @@ impl<'a> Contest<'a> {
         self.records[place].score = f64::NEG_INFINITY;
     }
 
-    /// The places of those that are not passed over.
+    /// The places of the candidates that are not passed over.
     pub(crate) fn left(&self) -> impl Iterator<Item = usize> {
         (0..self.records.len()).filter(|place| !self.passed_over[*place])
     }
 
-    /// The place of the best score; a tie is the first, and −∞ is none.
+    /// The place of the best score; of equal scores the first, and never one of −∞.
     pub(crate) fn best(&self) -> Option<usize> {
         let score = |place: usize| self.records[place].score;
         let left = self.left().filter(|place| score(*place) > f64::NEG_INFINITY);
@@ -154,7 +154,7 @@ mod tests {
         values.iter().enumerate().map(record).collect()
     }
 
-    /// What comes of a contest in an empty place, where no way leads.
+    /// The result of a contest on a grid of one cell.
     fn contest<T>(
         mut score: Score,
         values: &[(f64, f64)],

@@ -1,45 +1,46 @@
-//! Explored or not: when a cell is finished, and when it is given up.
+//! Exploration of each cell: when it is finished, and when it is given up.
 
 use crate::{PlannerParameters, StallRule};
 use covmap::{Cell, Grid, Raster};
 use covmap_model::ScanCounts;
 use serde::{Deserialize, Serialize};
 
-/// What became of a cell. The certificate of a run holds one of these for each cell; the
-/// first that applies, in this order.
+/// Status of a cell in a certificate.
+///
+/// Each cell has the first status that applies, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub enum CellStatus {
-    /// Outside the extent of the environment.
+    /// Outside of the environment's extent.
     Outside,
     /// Known, with an entropy of at most ε.
     Resolved,
-    /// Its entropy did not fall any longer, from any distance, or all view-points that hold
-    /// it in sight are spent.
+    /// Given up: the entropy did not fall any longer from any distance, or no reachable view-point with
+    /// the cell in sight is a candidate any longer.
     Exhausted,
-    /// In sight of a reachable view-point: there is something left to do.
+    /// In sight of a reachable candidate: the cell is still to be measured.
     Open,
-    /// Out of sight of all view-points that can be reached, or out of scope.
+    /// Out of sight of all reachable view-points, or out of scope.
     Unreachable,
-    /// Of a run that was stopped while cells were open: out of sight so far, but not cut off from
-    /// what is in sight.
+    /// Out of sight so far, but not cut off from the cells in sight; only in a run that was stopped
+    /// while cells were open.
     NotSeen,
 }
 
-/// From what kind of reachable view-point a cell is in sight within its limit.
+/// The kind of reachable view-point from which a cell is in sight within its limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum InSight {
-    /// From none.
+    /// No view-point.
     Nowhere,
-    /// From such only that tell nothing new.
+    /// Only view-points that tell nothing new.
     Spent,
-    /// From a candidate.
+    /// A candidate.
     Candidate,
 }
 
-/// How the measuring of one cell went on so far.
+/// Progress of the measurements of one cell.
 #[derive(Debug, Clone, Copy)]
 struct Progress {
-    /// R: the cell is a reason to go to a view-point from which it is no farther than this.
+    /// R: the cell is a reason to go to a view-point up to this distance away \[m\].
     limit: f32,
     /// The lowest entropy of this distance band.
     lowest: f32,
@@ -51,20 +52,20 @@ struct Progress {
     capped: bool,
 }
 
-/// One scan that should have told something about a cell.
+/// A scan that was expected to tell something about a cell.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CountedScan {
-    /// The cell by its row-major index.
+    /// Row-major index of the cell.
     pub(crate) index: usize,
-    /// Its distance from the sensor [m].
+    /// Distance of the cell from the sensor [m].
     pub(crate) distance: f32,
-    /// Its entropy before the scan [nats].
+    /// Entropy before the scan [nats].
     pub(crate) before: f32,
-    /// Its entropy after the scan [nats].
+    /// Entropy after the scan [nats].
     pub(crate) after: f32,
 }
 
-/// The state of every cell: finished, given up, or up to which distance it is a reason.
+/// The state of each cell: finished, given up, or the distance up to which it is a reason.
 ///
 /// Every counted scan either lowers the lowest entropy of the cell's present distance band
 /// by `min_entropy_change` or is one of at most `stall_limit` in a row, after which the band
@@ -123,7 +124,7 @@ impl Exploration {
         self.outside[index]
     }
 
-    /// The distance up to which a cell is a reason to measure: 0 if it is finished, given up
+    /// The distance up to which a cell is a reason to measure \[m\]; 0 if the cell is finished, given up
     /// or outside.
     pub(crate) fn limit(&self, index: usize, known: bool, entropy: f64) -> f32 {
         let progress = &self.progress[index];
@@ -163,19 +164,19 @@ impl Exploration {
         }
     }
 
-    /// Takes over which cells a scan intercepted, if this strategy counts that.
+    /// Adds the cells that a scan intercepted, if the strategy counts them.
     pub(crate) fn add_counts(&mut self, intercepted: impl FnOnce() -> Vec<(Cell, f64)>) {
         if let Some((counts, _)) = &mut self.counts {
             counts.add(&intercepted());
         }
     }
 
-    /// The weight of a cell's scans; 0 if this strategy does not count.
+    /// The weight of a cell's scans; 0 if the strategy does not count.
     pub(crate) fn weight(&self, index: usize) -> f64 {
         self.counts.as_ref().map_or(0.0, |(counts, _)| counts.weights()[index])
     }
 
-    /// Counts a scan for a cell. `touched` says whether its weight grew, where that matters.
+    /// Counts a scan for a cell. `touched` tells whether the cell's weight grew, for a counting strategy.
     pub(crate) fn count(&mut self, scan: CountedScan, touched: bool) {
         let CountedScan { index, distance, before, after } = scan;
         let counts_scans = self.counts.is_some();
@@ -196,18 +197,18 @@ impl Exploration {
         if progress.stalled >= self.stall_limit {
             progress.next_band(self.rule);
         }
-        // A counting strategy may ask for more scans than the cap; it ends by its own count.
+        // A counting strategy may ask for more scans than the cap: its own count ends it.
         if progress.counted >= self.max_counted && !progress.given_up && !counts_scans {
             (progress.given_up, progress.capped) = (true, true);
         }
     }
 
-    /// How many cells were given up by the cap on counted scans.
+    /// The number of cells given up by the cap on counted scans.
     pub(crate) fn capped_cells(&self) -> usize {
         self.progress.iter().filter(|p| p.capped).count()
     }
 
-    /// The grid-shaped number of scans counted for each cell.
+    /// The number of scans counted for each cell.
     pub(crate) fn counted_scans(&self, grid: Grid) -> Raster<u32> {
         Raster::from_fn(grid, |c| grid.index(c).map_or(0, |i| self.progress[i].counted))
     }
@@ -270,7 +271,7 @@ mod tests {
     #[test]
     fn the_literal_rule_looks_at_the_change_alone() {
         let mut e = exploration(|p| p.stall_rule = StallRule::Literal);
-        // Jitter between two bins is change, for ever:
+        // Jitter between two bins is a change, for ever:
         (0..500).for_each(|i| count(&mut e, 1.0, 1.0, if i % 2 == 0 { 1.01 } else { 0.99 }));
         assert_eq!(e.status(0, true, 1.0, InSight::Candidate), CellStatus::Open);
         (0..5).for_each(|_| count(&mut e, 1.0, 1.0, 1.0));
@@ -296,8 +297,8 @@ mod tests {
         assert_eq!(e.status(0, true, 2.0, InSight::Candidate), CellStatus::Resolved);
     }
 
-    /// A distance and an entropy. Drawn as f64: proptest's own f32 trips over its rounding,
-    /// once in some million draws.
+    /// A distance and an entropy, drawn as f64: proptest's own f32 trips over its rounding once in
+    /// some million draws.
     fn a_step() -> impl proptest::strategy::Strategy<Value = (f32, f32)> {
         #[allow(clippy::cast_possible_truncation, reason = "any f32 will do")]
         let step = |(distance, entropy): (f64, f64)| (distance as f32, entropy as f32);

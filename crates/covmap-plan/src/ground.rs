@@ -1,9 +1,9 @@
-//! Ground that the robot may yet win: no run ends before it looked at what keeps it off.
+//! Ground that the robot may yet reach: before a run ends, the robot measures what keeps it off.
 //!
-//! What a scan tells is weighed by the entropy of cells alone; that behind some of them a whole room
-//! may lie, of which nothing is in sight, does not count. So where no scan is worth its while any
-//! longer, the robot asks whether it could stand on more ground if cells that may be free were free, and
-//! measures those as long as it learns anything about them.
+//! The promise of a scan counts the entropy of cells alone, and not that a whole room may lie out of
+//! sight behind them. So if no scan is worth taking any longer, the planner asks whether the robot could
+//! stand on more ground if cells that may be free were free. The robot then measures these cells as long
+//! as it learns anything about them.
 
 use crate::parameters::LeastChange;
 use crate::passage::{ROOM, regions};
@@ -12,23 +12,24 @@ use crate::{Planner, TravelCosts};
 use covmap::{Cell, CoverageMap, bin_coverage};
 use covmap_gain::ViewPoints;
 
-/// A cell may be free if it is with at least this probability. (A cell of which nothing is known has .27,
-/// with 11 bins.)
+/// A cell may be free if it is free with at least this probability. (An unknown cell has .27 with 11 bins.)
 const MAY_BE_FREE: f64 = 0.2;
 
-/// What the entropy of a cell that keeps the robot off must be expected to fall by \[nats\], if something
-/// is known of it …
+/// Least expected fall of the entropy of a cell that keeps the robot off \[nats\], if something is known
+/// of the cell.
 const DOUBT: f64 = 0.1;
 
-/// … which is so with less entropy than this share of the largest: of other cells anything is worth
-/// knowing.
+/// Share of the largest entropy from which on next to nothing is known of a cell. For such a cell any
+/// change that counts is worth a scan.
 const BLANK: f64 = 0.9;
 
 impl Planner {
-    /// For each cell that keeps the robot in the cell `from` off more ground the candidate that is
-    /// expected to change it most, if that is enough, and what a scan must promise then: as much as one
-    /// cell that counts. `None` if there is no such ground, if it is not asked what is expected to change,
-    /// or with the product of Eq. (9), which does not tell the cells apart.
+    /// The candidates towards more ground for a robot in the cell `from`, and what a scan must promise then.
+    ///
+    /// For each cell that keeps the robot off, this is the candidate that is expected to change the cell
+    /// most, if that change is enough; a scan must promise as much as one cell that counts. `None` if there
+    /// is no such ground, if the parameters ask for no expected change, or with the product of Eq. (9),
+    /// which does not tell the cells apart.
     pub(crate) fn candidates_towards_ground(
         &mut self,
         map: &CoverageMap,
@@ -53,8 +54,8 @@ impl Planner {
         (!candidates.indices.is_empty()).then_some((candidates, least))
     }
 
-    /// Which cells keep the robot off ground that it could stand on if they were free, as they may be;
-    /// `None` if there is no such ground of about a square metre beside what it can reach.
+    /// Marks the cells that keep the robot off ground, where it could stand if all cells that may be free
+    /// were free; `None` if there is no such ground of about a square metre next to the reachable cells.
     fn what_keeps_off_ground(&self, map: &CoverageMap, costs: &TravelCosts) -> Option<Vec<bool>> {
         let is_reached = |i: usize| costs.cost(i).is_some();
         let may_be_free: Vec<bool> = self.grid.cells().map(|c| self.may_be_free(map, c)).collect();
@@ -79,7 +80,7 @@ impl Planner {
         f64::from(self.gains.entropy(index)) >= BLANK * largest
     }
 
-    /// Whether a cell may be one that the robot can drive over.
+    /// Whether the robot may be able to drive over a cell.
     fn may_be_free(&self, map: &CoverageMap, cell: Cell) -> bool {
         let histogram = map.histogram(cell);
         let most = self.parameters().traversable_coverage + 1e-9;

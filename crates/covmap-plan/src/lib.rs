@@ -1,11 +1,10 @@
-//! Where to measure next, and when all is explored.
+//! Planning: where to measure next, and when all is explored.
 //!
-//! Section 4 of Stachniss & Burgard (2003), equations (11), (12), (15) and (16); what is expected to
-//! be gained is `covmap-gain`'s. The principal type is
-//! [`Planner`]: it is told what each scan changed, and chooses the next view-point by one of
-//! the paper's [`Strategy`]s.
+//! Section 4 of Stachniss & Burgard (2003), equations (11), (12), (15) and (16); `covmap-gain`
+//! evaluates the expected information gain. The principal type is [`Planner`]: it takes over what
+//! each scan changed, and chooses the next view-point by one of the paper's [`Strategy`]s.
 //!
-//! This crate knows nothing of the world: a planner cannot see the truth.
+//! This crate does not depend on the world: a planner cannot see the truth.
 //!
 //! # Units
 //! Metres, radians, nats.

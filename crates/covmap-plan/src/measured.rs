@@ -1,18 +1,17 @@
-//! From where it was measured.
+//! The places where scans were taken.
 
 use covmap::{Cell, Grid};
 use covmap_model::cells_under_body;
 use nalgebra::Point2;
 
-/// A view-point exactly at the spacing is not spent, whatever rounding does \[m\].
+/// Margin by which a view-point exactly at the spacing is not spent, in spite of rounding \[m\].
 const ROUNDING: f64 = 1e-9;
 
-/// Which view-points are spent: too near to where a scan was taken to tell anything new.
+/// The spent view-points: those too near to a scan to tell anything new.
 ///
-/// Choice: readings from one place share their errors (the same wall that does not answer,
-/// the same width of the cone), so that repeating them adds confidence and no knowledge. Where the
-/// model knows of that ([`Repeats`](covmap_model::Repeats)) the gain says it, and spacing 0 spends
-/// nothing, as in the paper.
+/// Choice: readings from one place share their errors (the same wall that does not answer, the same
+/// width of the cone); repeating them adds confidence but no knowledge. If the model accounts for that
+/// ([`Repeats`](covmap_model::Repeats)), so does the gain. A spacing of 0 spends nothing, as in the paper.
 #[derive(Debug, Clone)]
 pub(crate) struct Measured {
     grid: Grid,

@@ -5,51 +5,50 @@ use covmap::short;
 use covmap_gain::{BeamError, InformationGain, RangePrediction, Upkeep};
 use serde::{Deserialize, Serialize};
 
-/// When a cell is given up whose entropy does not fall any longer.
+/// Rule for giving up a cell whose entropy does not fall any longer.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum StallRule {
-    /// Ours: the lowest entropy within a distance band must fall. When it stalls, only scans
+    /// Our rule: the lowest entropy within a distance band must fall. When it stalls, only scans
     /// from half the distance count; below `closest` \[m\] the cell is exhausted. A cell at a
-    /// border jitters between two bins for ever, and looks from afar say little: with bands
-    /// runs end, provably, and no cell is given up for having been looked at from afar.
+    /// border jitters between two bins for ever, and scans from afar say little: with bands,
+    /// runs end provably, and no cell is given up because of scans from afar.
     Banded {
-        /// The first band: a cell is a reason to measure from no farther than this \[m\], and
-        /// never farther than the usable range. Below that, a robot does not measure again and
-        /// again from afar what a few scans from nearby settle, and settle better.
+        /// Outer limit of the first band \[m\]: a cell is a reason to measure from at most this distance,
+        /// and from at most the usable range. With a limit below the usable range, the robot does not
+        /// measure again and again from afar what a few scans from nearby settle better.
         first: f64,
         /// The distance below which there is no further band \[m\].
         closest: f64,
     },
-    /// As `Banded`, but the first stall exhausts the cell.
+    /// Like `Banded`, but the first stall exhausts the cell.
     Unbanded,
     /// The paper's words: the change of entropy is below the limit for five consecutive
-    /// measurements. Cells that jitter end by the cap on counted scans only.
+    /// measurements. Only the cap on counted scans ends a cell that jitters.
     Literal,
 }
 
-/// When cells that are not resolved are a reason to go to a view-point.
+/// Condition under which unresolved cells are a reason to go to a view-point.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Reason {
-    /// When one is in sight from there: the paper counts, for each cell, the measurements that did
+    /// One such cell is in sight from there. The paper counts, for each cell, the measurements that did
     /// not change it, after they were made.
     InSight,
-    /// When one is in sight whose entropy is expected to fall, and there are enough of them. "Unable to
-    /// reduce the entropy of a cell", foreseen instead of waited for.
+    /// Enough cells are in sight whose entropy is expected to fall: the planner foresees the paper's
+    /// "unable to reduce the entropy of a cell" instead of waiting for it.
     ExpectedChange {
-        /// What a cell's entropy must be expected to fall by to count, δ:
+        /// δ: the least expected fall of a cell's entropy with which the cell counts,
         /// Σ_d p(d | c) · I(h_i | d) \[nats\].
         cell: f64,
-        /// What all of them together must be expected to fall by if a scan is to be worth its while,
-        /// times the area of a cell, which makes it the same in coarse grids and in fine ones:
+        /// The least expected fall of all these cells together with which a scan is worth taking,
+        /// times the area of a cell, so that it holds for coarse grids as for fine ones:
         /// r² · Σ_i Σ_d p(d | c) · I(h_i | d) \[nats · m²\].
         scan: f64,
     },
 }
 
-/// How much is measured before nothing is worth it: how sure of a cell is sure enough, and what a scan
-/// must be expected to tell, together.
+/// The effort of a run: how certain a cell must be, together with what a scan must be expected to tell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Effort {
     /// The floor plan, with two thirds of the scans of `Standard`.
@@ -61,8 +60,8 @@ pub enum Effort {
 }
 
 impl Effort {
-    /// ε \[nats\], and what a scan must be expected to tell \[nats · m²\]. What they buy stands in
-    /// docs/results.md.
+    /// ε \[nats\], and what a scan must be expected to tell \[nats · m²\]. docs/results.md shows their
+    /// effect.
     fn demands(self) -> (f64, f64) {
         match self {
             Self::Quick => (1.2, 0.3),
@@ -72,25 +71,26 @@ impl Effort {
     }
 }
 
-/// With any effort, what a cell's entropy must be expected to fall by to count \[nats\]: the paper's .001.
-/// In open space, where echoes come from afar, each cell promises little, and all together enough.
+/// Least expected fall of a cell's entropy with which the cell counts, for any effort \[nats\]: the
+/// paper's .001. In open space, where echoes come from afar, each cell promises little, and all cells
+/// together promise enough.
 const LEAST_OF_CELL: f64 = 0.001;
 
-/// What a scan is expected to change if it is worth its while \[nats\].
+/// Least expected changes with which a scan is worth taking \[nats\].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct LeastChange {
-    /// About one cell, if it is to count.
+    /// Least change of one cell with which it counts.
     pub(crate) cell: f64,
-    /// About all cells that count.
+    /// Least change of all cells that count.
     pub(crate) scan: f64,
 }
 
-/// Which cells must be explored.
+/// The cells that must be explored.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Scope {
-    /// All that can be seen from where the robot can stand: walls, too.
+    /// All cells in sight of a place where the robot can stand, including walls.
     Observable,
-    /// Only those where the robot can stand, or might: the paper's words.
+    /// Only the cells where the robot can or might stand: the paper's words.
     Reachable,
 }
 
@@ -105,10 +105,10 @@ pub enum InPlace {
     AtViewPoints,
 }
 
-/// What is made of the fact that the robot's body fits where it stands.
+/// Use of the fact that the robot's body fits where it stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BodyEvidence {
-    /// Nothing, but that a step that the robot has driven can be driven again.
+    /// Only that a step the robot has driven can be driven again.
     Off,
     /// Also, a view-point that the robot stood on stays traversable from all sides.
     PlannerOnly,
@@ -120,63 +120,62 @@ pub enum BodyEvidence {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlannerParameters {
-    /// How the next view-point is chosen.
+    /// Strategy that chooses the next view-point.
     pub strategy: Strategy,
-    /// What a view-point is expected to gain: the paper's Eq. (14), or mutual information.
+    /// The gain expected of a view-point: the paper's Eq. (14), or mutual information.
     pub gain: InformationGain,
-    /// When cells are a reason to measure.
+    /// Condition under which cells are a reason to measure.
     pub reason: Reason,
     /// ε: a cell with an entropy up to this is explored \[nats\].
     pub entropy_threshold: f64,
     /// A smaller fall of a cell's entropy is a stall \[nats\]: the paper's .001.
     pub min_entropy_change: f64,
-    /// Stalls in a row after which a cell is given up: the paper's five.
+    /// The number of consecutive stalls after which a cell is given up: the paper's five.
     pub stall_limit: u32,
-    /// When a cell is given up.
+    /// Rule for giving up a cell.
     pub stall_rule: StallRule,
-    /// A view-point nearer than this to where a scan was taken is no candidate \[m\]: for models that
-    /// take readings from one place for independent. 0 asks for no distance. Counting strategies, which
-    /// count just that, do not ask.
+    /// Least distance of a candidate from the places where scans were taken \[m\]; 0 for none. For models
+    /// that treat readings from one place as independent. Counting strategies, which count repeated scans,
+    /// ignore it.
     pub scan_spacing: f64,
     /// Whether the robot may measure again where it stands. Files of versions that did not have this
     /// parameter are read as `Always`, which is what those versions did.
     #[serde(default)]
     pub in_place: InPlace,
-    /// A practical cap on the scans counted for one cell; reported whenever it fires.
+    /// Cap on the number of scans counted for one cell; the planner counts the cells that it gives up.
     pub max_counted_scans: u32,
-    /// The cost of a turn of one radian to IG_CL, in metres of way \[m/rad\]: d(l, x) of
-    /// Eq. (16) is the length of the way and this for all turns on it. 0, the paper: turns cost nothing.
+    /// Cost of a turn of one radian for IG_CL \[m/rad\]: d(l, x) of Eq. (16) is the length of the path
+    /// plus the cost of all turns on it. In the paper turns cost nothing: 0.
     pub turn_cost: f64,
-    /// Which cells must be explored.
+    /// The cells that must be explored.
     pub scope: Scope,
     /// Which cells a counting strategy must cover by its scans. The paper stops counting when "all reachable
     /// locations were covered by a measurement": `Reachable`. Files of versions that did not have this
     /// parameter are read as `Observable`, which is what those versions did.
     #[serde(default = "observable")]
     pub count_scope: Scope,
-    /// The largest most likely coverage of a cell that the robot may drive over.
+    /// The robot may drive over a cell whose most likely coverage is at most this.
     pub traversable_coverage: f64,
-    /// c_u: how much an unknown cell reflects when ranges are predicted.
+    /// c_u: reflection of an unknown cell when ranges are predicted.
     pub unknown_reflection: f64,
     /// η: share of every predicted range's probability that is spread over all ranges.
     pub uniform_share: f64,
-    /// What is made of where the robot's body was.
+    /// Use of the places where the robot's body was.
     pub body_evidence: BodyEvidence,
-    /// When nothing is open in reach, but something is beyond a passage that looks blocked,
-    /// the robot tries it with its body, if it is no longer than this \[m\]; 0, the paper,
-    /// tries none.
+    /// Length up to which the robot tries a passage that looks blocked with its body \[m\], when cells
+    /// are open beyond the passage and none in reach. 0, as in the paper: the robot tries none.
     pub passage_length: f64,
 }
 
-/// Why parameters make no planner.
+/// Error in the parameters of a planner.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PlannerError {
-    /// A parameter is not in its interval.
+    /// A parameter is outside its interval.
     #[error("planner.{name}: {} must lie in [{min}, {max}]", short(value))]
     OutOfRange {
-        /// The parameter.
+        /// Name of the parameter.
         name: &'static str,
-        /// Its value.
+        /// Value of the parameter.
         value: f64,
         /// Smallest allowed value.
         min: f64,
@@ -186,13 +185,13 @@ pub enum PlannerError {
     /// A beam covers too many cells.
     #[error(transparent)]
     Beam(#[from] BeamError),
-    /// The strategy has an impossible number.
+    /// A number of the strategy is out of its range.
     #[error("planner.strategy: {0}")]
     Strategy(#[from] StrategyError),
 }
 
 impl PlannerError {
-    /// Checks that a number lies in an interval; what is no number does not.
+    /// Checks that a number lies in an interval; NaN does not.
     pub(crate) fn within(name: &'static str, value: f64, min: f64, max: f64) -> Result<(), Self> {
         let good = (min..=max).contains(&value);
         good.then_some(()).ok_or(Self::OutOfRange { name, value, min, max })
@@ -204,7 +203,7 @@ fn observable() -> Scope {
 }
 
 impl PlannerParameters {
-    /// The defaults: IG_CL(.1), walls are targets, [`Effort::Standard`], the paper's .001 and five.
+    /// Returns the defaults: IG_CL(.1), walls are targets, [`Effort::Standard`], the paper's .001 and five.
     pub fn standard() -> Self {
         let (entropy_threshold, scan) = Effort::Standard.demands();
         Self {
@@ -229,7 +228,7 @@ impl PlannerParameters {
         }
     }
 
-    /// The same with another effort.
+    /// Returns the same parameters with another effort.
     #[must_use]
     pub fn with_effort(self, effort: Effort) -> Self {
         let (entropy_threshold, scan) = effort.demands();
@@ -261,7 +260,7 @@ impl PlannerParameters {
         within("passage_length", self.passage_length, 0.0, 100.0)
     }
 
-    /// How ranges are predicted.
+    /// Returns the parameters of the range prediction.
     pub fn range_prediction(&self) -> RangePrediction {
         let Self { gain, unknown_reflection, uniform_share, .. } = *self;
         RangePrediction { gain, unknown_reflection, uniform_share, novelty: 1.0 }
@@ -275,14 +274,15 @@ impl PlannerParameters {
         }
     }
 
-    /// Strategies that weigh gains keep them; the others report some few.
+    /// The gains are kept for strategies that weigh gains or ask for an expected change, and evaluated on
+    /// demand for the others, which only report a few.
     pub(crate) fn upkeep(&self) -> Upkeep {
         let keeps = self.strategy.uses_gain() || self.least_change(1.0).is_some();
         if keeps { Upkeep::Kept } else { Upkeep::OnDemand }
     }
 
-    /// What is expected at least, in cells of this side \[m\]; `None` if that does not matter, as for
-    /// strategies that count.
+    /// The least expected changes, in cells of this side \[m\]; `None` if the parameters ask for none, and
+    /// for strategies that count.
     pub(crate) fn least_change(&self, resolution: f64) -> Option<LeastChange> {
         match self.reason {
             Reason::ExpectedChange { cell, scan } if self.strategy.counting().is_none() => {
@@ -293,7 +293,7 @@ impl PlannerParameters {
         }
     }
 
-    /// The longest passage that is tried, in cells; `None` if none is.
+    /// The length of the longest passage that is tried, in cells; `None` if none is.
     pub(crate) fn longest_passage(&self, resolution: f64) -> Option<usize> {
         #[allow(clippy::cast_possible_truncation, reason = "at most 1e6")]
         let cells = (self.passage_length / resolution + 1e-9).min(1e6) as usize;

@@ -1,19 +1,20 @@
-//! Places that may be a passage though they look blocked.
+//! Places that may be a passage although they look blocked.
 
 use crate::planner::{Candidates, Planner};
 use crate::travel_costs;
 use covmap::{Cell, CoverageMap, Grid, Steps, neighbour, step_between};
 use covmap_gain::ViewPoints;
 
-/// A passage is worth trying if beyond it the robot could stand on this many times the area of
-/// its body, about a square metre: pockets behind bumps are not.
+/// A passage is worth trying if the robot could stand beyond it on this many times the area of its
+/// body, about a square metre; a passage to a pocket behind a bump is not.
 pub(crate) const ROOM: usize = 4;
 
 impl Planner {
-    /// What L(c) would be beyond the nearest passage that looks blocked but was not tried,
-    /// for a robot that can reach no candidate; `None` if there is no such passage.
+    /// L(c) beyond the nearest passage that looks blocked but was not tried, for a robot that can reach
+    /// no candidate; `None` if there is no such passage.
     ///
-    /// Cells at which the robot never bumped come first; then all, by steps at which it did not.
+    /// Passages over cells that the robot never bumped at come first; then passages over any cells, by
+    /// steps that it never bumped at.
     pub(crate) fn candidates_beyond_a_passage(
         &mut self,
         map: &CoverageMap,
@@ -59,13 +60,13 @@ impl Planner {
     }
 }
 
-/// A way that nobody tried, from a cell that the robot can reach to one of what lies beyond:
-/// its cells by their row-major index, with both.
+/// An untried way from a reachable cell to a cell beyond a passage: the row-major indices of its
+/// cells, including both ends; `None` if there is none.
 ///
-/// `travel_cost` tells how far each cell is \[cells\] that the robot can reach. Between the ends
-/// there are at most `longest` cells, as few as possible, each one of those that `may_try`; each
-/// step `may_try_step`. It is the passage through which it is nearest to what `is_beyond`; `None`
-/// if there is none.
+/// `travel_cost` is the travel cost of each reachable cell \[cells\]. Between the ends lie at most
+/// `longest` cells, and each of them fulfils `may_try`; each step fulfils `may_try_step`. The search
+/// reaches every cell over as few untried cells as possible; the way is the one with the least travel
+/// cost to a cell that `is_beyond`.
 pub(crate) fn nearest_passage(
     grid: &Grid,
     longest: usize,
@@ -80,7 +81,7 @@ pub(crate) fn nearest_passage(
         (0..grid.len()).filter_map(|index| Some((travel_cost(index)?, index))).collect();
     front.iter().for_each(|(_, index)| previous[*index] = *index);
     let mut nearest: Option<(f64, usize, usize)> = None;
-    // Of passages of the same number of cells the nearest comes first.
+    // Of passages with the same number of cells, the nearest comes first.
     for length in 0..=longest {
         let mut next = Vec::new();
         front.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
@@ -112,7 +113,7 @@ pub(crate) fn nearest_passage(
     nearest.map(|(_, last, beyond)| way_from(&previous, last, beyond))
 }
 
-/// The cells of those regions of members, of at least `least` cells, one of which `is_wanted`.
+/// Marks the cells of the regions of members that have at least `least` cells and a cell that `is_wanted`.
 pub(crate) fn regions(
     steps: &Steps,
     least: usize,
@@ -128,7 +129,7 @@ pub(crate) fn regions(
     large
 }
 
-/// The cells of the passage whose last but one is `last`, from the one from which it begins.
+/// The cells of the passage that ends with the cells `last` and `beyond`, from its first cell on.
 fn way_from(previous: &[usize], last: usize, beyond: usize) -> Vec<usize> {
     let mut way = vec![beyond, last];
     let mut at = last;
@@ -145,9 +146,8 @@ mod tests {
     use super::*;
     use nalgebra::Point2;
 
-    /// Of a picture with `r` where the robot can be, `b` beyond, and `?` what may open: the
-    /// same with the passage as `o`.
-    /// The robot is in the first cell.
+    /// Compares the passage in a picture: `r` is a cell that the robot can reach, `b` a cell beyond, `?` a
+    /// cell that may open, and `o` a cell of the passage. The robot is in the first cell.
     #[track_caller]
     fn check(longest: usize, picture: &str, expected: Option<&str>) {
         let cells: Vec<u8> = picture.bytes().filter(|c| *c != b'\n').collect();

@@ -1,4 +1,4 @@
-//! The planner: one owner of what is explored, what stalls, and what was computed before.
+//! The planner: the owner of the exploration, the stalls and the gain cache.
 
 mod cost;
 mod search;
@@ -25,13 +25,13 @@ use nalgebra::{Point2, Vector2};
 use rayon::prelude::*;
 use search::Search;
 
-/// Chooses view-points by the strategies of section 4, and knows when all is explored.
+/// Planner that chooses view-points by the strategies of section 4, and knows when all is explored.
 ///
-/// All maps that it is given must be on the grid of `outside` in [`Planner::new`], and all scans
-/// must have one reading for each beam: it panics if they do not fit.
+/// All maps must be on the grid of `outside` in [`Planner::new`], and all scans must have one reading
+/// for each beam; the planner panics if they do not fit.
 ///
-/// Tell it of everything that happens ([`observe`], [`body_moved`], [`stand_on`], [`drove`],
-/// [`bump`]), then ask it to [`choose`].
+/// The caller reports every event ([`observe`], [`body_moved`], [`stand_on`], [`drove`], [`bump`]), then
+/// asks the planner to [`choose`].
 ///
 /// [`observe`]: Planner::observe
 /// [`body_moved`]: Planner::body_moved
@@ -49,16 +49,16 @@ pub struct Planner {
     pub(crate) exploration: Exploration,
     pub(crate) gains: GainCache,
     pub(crate) measured: Measured,
-    /// How much of a reading from each view-point would be new.
+    /// The share of a reading from each view-point that would be new.
     novelty: Vec<f64>,
-    /// What a scan must be expected to change, if it is asked.
+    /// What a scan must be expected to change, if the parameters ask for it.
     pub(crate) least_change: Option<LeastChange>,
     pub(crate) window: Option<Window>,
     /// While driving, a target is another cell than the robot's, if there is one.
     leaves_its_cell: bool,
-    /// The direction of the last piece of the way that the robot drove.
+    /// The direction in which the robot drove last.
     pub(crate) ahead: Option<Vector2<f64>>,
-    /// The chosen view-point, and what was in sight of it when it was chosen.
+    /// The chosen view-point, and the cells in sight of it when it was chosen.
     target: Option<(Cell, Vec<(usize, f32)>)>,
 }
 
@@ -71,14 +71,13 @@ pub(crate) struct Candidates {
 }
 
 impl Planner {
-    /// A planner that knows nothing yet.
+    /// Returns a planner that knows nothing yet.
     ///
-    /// `outside` tells the cells outside the extent of the environment, which need not be
-    /// explored; `radius` is the robot's \[m\], `heading` the direction that its ring keeps
-    /// \[rad\].
+    /// `outside` marks the cells outside of the environment's extent, which need not be explored; `radius`
+    /// is the robot's radius \[m\], `heading` the direction that its ring keeps \[rad\].
     ///
     /// # Errors
-    /// If a parameter is out of its interval, or the radius or the heading is.
+    /// If a parameter, the radius or the heading is outside its interval.
     pub fn new(
         parameters: &PlannerParameters,
         model: &SensorModel,
@@ -123,11 +122,11 @@ impl Planner {
         Ok(planner)
     }
 
-    /// Takes note of a scan that was integrated, and of what it changed.
+    /// Takes note of a scan that was integrated into the map, and of its changes.
     ///
-    /// The scan counts for the unfinished cells that it should have seen: V(l) before it, of
-    /// the view-point whose cell holds its pose; for the chosen view-point, V(l) as it was
-    /// when it was chosen.
+    /// The scan counts for the unfinished cells that it should have seen: V(l) before the scan, where l
+    /// is the view-point whose cell holds the scan's pose. If l is the chosen view-point, V(l) is as it was
+    /// at the decision.
     pub fn observe(&mut self, map: &CoverageMap, scan: &Scan, changes: &[Change]) {
         let at = self.grid.cell_at(scan.pose.translation.vector.into());
         let in_sight = match (self.target.take(), at) {
@@ -160,7 +159,7 @@ impl Planner {
         }
     }
 
-    /// A look from some place was taken: another one from near there would tell less that is new.
+    /// Takes note of the place of a scan: less of another scan from near there would be new.
     fn note_look(&mut self, at: Point2<f64>) {
         self.measured.note(at);
         let repeats = self.model.repeats();
@@ -175,14 +174,14 @@ impl Planner {
         }
     }
 
-    /// What is expected of a view-point, with how much there would be new.
+    /// Returns the parameters of the range prediction at a view-point, including the novelty of its readings.
     pub fn prediction_at(&self, view_point: Cell) -> RangePrediction {
         let novelty = self.grid.index(view_point).map_or(1.0, |index| self.novelty[index]);
         RangePrediction { novelty, ..self.parameters.range_prediction() }
     }
 
-    /// Takes note that the robot's body was all the way between two points, and of what that
-    /// changed in the map, if anything.
+    /// Takes note that the robot's body moved straight between two points, and of the changes of the map
+    /// that follow from that, if any.
     pub fn body_moved(
         &mut self,
         map: &CoverageMap,
@@ -202,24 +201,26 @@ impl Planner {
         self.leaves_its_cell = self.parameters.in_place == InPlace::AtViewPoints;
     }
 
-    /// Takes note that the robot stands in a cell: it can stand there again.
+    /// Takes note that the robot stands in a cell, and so can stand there again.
     pub fn stand_on(&mut self, cell: Cell) {
         if self.parameters.body_evidence != BodyEvidence::Off {
             self.traversable.stand_on(cell);
         }
     }
 
-    /// Takes note that the robot drove from the centre of one cell straight to that of another, where it
-    /// stands now: if that is a neighbour it can always drive that step again, and back.
+    /// Takes note that the robot drove straight from the centre of one cell to that of another, where it
+    /// stands now. If the cells are neighbours, the step is possible both ways, until a bump closes it.
     pub fn drove(&mut self, from: Cell, to: Cell) {
         self.traversable.drive(from, to);
         self.ahead = (from != to).then(|| straight(from, to)).or(self.ahead);
         self.stand_on(to);
     }
 
-    /// Takes note that the robot bumped into something at a place \[m\] when it drove from the centre of
-    /// one cell straight to that of another: the step there is closed, and if it is a straight one the
-    /// cell is blocked, unless the robot stood there.
+    /// Takes note that the robot bumped into something at a place \[m\] as it drove straight from the centre
+    /// of one cell to that of another.
+    ///
+    /// This closes the step at that place. If the step is not diagonal, it also blocks the cell to which
+    /// the step leads, unless the robot stood there before.
     pub fn bump(&mut self, from: Cell, to: Cell, at: Point2<f64>) {
         let (from, to) = self.traversable.step_at(from, to, at);
         self.traversable.bump(from, to);
@@ -243,7 +244,7 @@ impl Planner {
         }
     }
 
-    /// Sets up to which distance a cell is a reason to measure.
+    /// Sets the distance up to which a cell is a reason to measure.
     pub(crate) fn update_limit(&mut self, map: &CoverageMap, index: usize) {
         let cell = self.grid.cell(index);
         let known = map.is_known(cell);
@@ -260,23 +261,26 @@ impl Planner {
         self.gains.set_limit(index, limit);
     }
 
-    /// Whether a cell is a reason to measure from so far away \[m\].
+    /// Whether a cell is a reason to measure from this distance \[m\].
     pub(crate) fn is_reason(&self, index: usize, distance: f32) -> bool {
         self.gains.is_reason(index, distance)
     }
 
-    /// V(l): the cells in sight of a view-point, by their row-major index, with their
-    /// distance from the sensor \[m\]: those in the footprint of some beam's outcome with a
-    /// total probability of at least ½.
+    /// Returns V(l): the row-major indices of the cells in sight of a view-point, with their distances
+    /// from the sensor \[m\].
+    ///
+    /// A cell is in sight if it is in the footprints of a beam's outcomes with a total probability of at
+    /// least ½.
     pub fn cells_in_sight(&mut self, view_point: Cell) -> Vec<(usize, f32)> {
         let Some(index) = self.grid.index(view_point) else { return Vec::new() };
         self.gains.refresh_sight(&ViewPoints::one(&self.grid, index));
         self.gains.cells_in_sight(index)
     }
 
-    /// L(c) and the ways there, for a robot in the cell `from`. Spent view-points are left
-    /// out, unless the robot can reach none but those that one scan spends: it measures
-    /// again until it can leave, or there is no reason left.
+    /// L(c) and the ways there, for a robot in the cell `from`.
+    ///
+    /// Spent view-points are left out, unless a scan from `from` would spend all that the robot can reach:
+    /// then the robot measures again until it can leave, or no reason is left.
     pub(crate) fn candidates(&mut self, from: Cell) -> Candidates {
         let costs = travel_costs(self.traversable.steps(), from);
         let reached = ViewPoints::of(&self.grid, costs.reached());
@@ -291,7 +295,7 @@ impl Planner {
         Candidates { indices, costs, passage: Vec::new() }
     }
 
-    /// The candidates with their costs for a robot in the cell `from`; gains and scores are not filled in.
+    /// The candidates with their costs for a robot in the cell `from`, without gains and scores.
     pub(crate) fn records(&self, candidates: &Candidates, from: Cell) -> Vec<CandidateRecord> {
         let record = |&index: &usize| CandidateRecord {
             cell: self.grid.cell(index),
@@ -317,8 +321,8 @@ impl Planner {
         }
     }
 
-    /// Every candidate for a robot in the cell `from`, with gains and scores, in row-major
-    /// order: what the next decision is made from. For IG_WIN those of the whole map.
+    /// Returns all candidates of the next decision for a robot in the cell `from`, with gains and scores, in
+    /// row-major order; for IG_WIN those of the whole map.
     ///
     /// # Panics
     /// If the robot's cell lies outside of the grid.
@@ -341,20 +345,22 @@ impl Planner {
         }
     }
 
-    /// Chooses the next view-point for a robot in the cell `from` by the strategy of the parameters; `None` if
-    /// there is no candidate: nothing is open, and no passage is left to try.
+    /// Chooses the next view-point for a robot in the cell `from` by the strategy of the parameters.
+    ///
+    /// `None` if there is no candidate: no cell is open, and no passage is left to try.
     ///
     /// # Panics
     /// If the robot's cell lies outside of the grid.
     pub fn choose(&mut self, map: &CoverageMap, from: Cell) -> Option<Decision> {
         let mut score = self.score();
-        // On a thread of the pool, what shares its work out need not wait for other threads.
+        // On a thread of the pool, code that shares its work out need not wait for other threads.
         rayon::scope(|_| self.choose_by(map, from, &mut score))
     }
 
-    /// The same by a strategy of one's own. It is given all view-points with a reason to measure there, with
-    /// their gains and costs; those at which a scan is not worth its while are passed over, whatever
-    /// their score.
+    /// Chooses the next view-point by the caller's own strategy.
+    ///
+    /// The strategy scores all view-points with a reason to measure there, by their gains and costs.
+    /// View-points from which a scan is not worth taking are passed over, whatever their score.
     ///
     /// # Panics
     /// If the robot's cell lies outside of the grid.
@@ -407,8 +413,7 @@ impl Planner {
         })
     }
 
-    /// The five best candidates; where the strategy needs no gains they are computed for
-    /// these.
+    /// The five best candidates; if the strategy needs no gains, only theirs are evaluated.
     fn report(
         &mut self,
         mut records: Vec<CandidateRecord>,
@@ -431,8 +436,8 @@ impl Planner {
         records
     }
 
-    /// Replaces the gains that could decide by those of the literal equations, and scores
-    /// anew. Returns how many there were, where there was more than one.
+    /// Replaces the gains that could decide by those of the literal equations, and scores anew. Returns
+    /// the number of contenders; 0 if there was only one.
     fn decide_ties(&self, map: &CoverageMap, contest: &mut Contest<'_>) -> usize {
         let doubt = 2.0 * contest.uncertainty();
         let records = &mut contest.records;
@@ -458,18 +463,18 @@ impl Planner {
         contenders
     }
 
-    /// The cells around a view-point, as the planner's beams see them.
+    /// Returns the cells around a view-point, as the planner's beams see them.
     pub fn stencil(&self) -> &Stencil {
         self.gains.stencil()
     }
 
-    /// What it knows of gains: after a decision, the gains that it evaluated for it or kept, and
-    /// bounds of the others.
+    /// Returns the gain cache: after a decision, the gains that were evaluated for it or kept, and bounds of
+    /// the others.
     pub fn gains(&self) -> &GainCache {
         &self.gains
     }
 
-    /// The parameters.
+    /// Returns the parameters.
     pub fn parameters(&self) -> &PlannerParameters {
         &self.parameters
     }

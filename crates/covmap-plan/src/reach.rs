@@ -1,15 +1,15 @@
-//! Where the robot can drive.
+//! The reach of the robot.
 
 use serde::{Deserialize, Serialize};
 
-/// Whether the robot can drive to the centre of a cell, as far as it knows; and if not, why.
+/// Whether the robot can drive to the centre of a cell, as far as the planner knows, and if not, why.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Reach {
-    /// It can.
+    /// The robot can drive there.
     Reached,
-    /// It could stand there, but no way is open.
+    /// The robot could stand there, but no way is open.
     CutOff,
-    /// It bumped there.
+    /// The robot bumped there.
     Bumped,
     /// A known cell under its body would be covered.
     Covered,

@@ -7,9 +7,9 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::fmt;
 use std::str::FromStr;
 
-/// How the next view-point is chosen.
+/// A strategy that chooses the next view-point.
 ///
-/// In files, on the command line and in tables a strategy is spelled alike: `CL`, `IG`, `IG_WIN:RADIUS`,
+/// Files, the command line and tables spell a strategy alike: `CL`, `IG`, `IG_WIN:RADIUS`,
 /// `IG_CL:ALPHA`, `COUNT:N`, `COUNT:N:D0`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Strategy {
@@ -17,7 +17,7 @@ pub enum Strategy {
     Cl,
     /// The largest expected information gain, Eq. (15).
     Ig,
-    /// The largest gain within a local window until that is explored (section 4.2).
+    /// The largest gain within a local window until the window is explored (section 4.2).
     IgWin {
         /// Radius of the window \[m\].
         radius: f64,
@@ -27,12 +27,12 @@ pub enum Strategy {
         /// Weight of the gain.
         alpha: f64,
     },
-    /// The closest location at which a cell can be scanned that was not scanned `times`
-    /// times yet (section 5.1); no entropy is read.
+    /// The closest location with a cell in sight that was not yet scanned `times` times (section 5.1);
+    /// this strategy reads no entropy.
     Count {
-        /// How often each cell must be scanned.
+        /// The number of scans that each cell needs.
         times: f64,
-        /// Distance at which a beam counts half \[m\]; none counts every beam fully.
+        /// Distance at which a beam counts half \[m\]; if none, every beam counts fully.
         half_distance: Option<f64>,
     },
 }
@@ -43,7 +43,7 @@ impl Strategy {
         matches!(self, Strategy::Ig | Strategy::IgWin { .. } | Strategy::IgCl { .. })
     }
 
-    /// How scans are counted, and up to which weight, if this strategy counts.
+    /// Returns the rule for counting scans and the weight that finishes a cell, if the strategy counts.
     pub fn counting(&self) -> Option<(Counting, f64)> {
         let Strategy::Count { times, half_distance } = *self else { return None };
         let counting = half_distance
@@ -51,7 +51,7 @@ impl Strategy {
         Some((counting, times))
     }
 
-    /// A short name for files: letters, digits, dots and hyphens.
+    /// Returns a short name for files: letters, digits, dots, hyphens and underscores.
     pub fn file_name(&self) -> String {
         match self {
             Strategy::Cl => "CL".into(),
@@ -63,8 +63,8 @@ impl Strategy {
         }
     }
 
-    /// Checks the numbers: with larger ones a run would not end, or its choice would not depend on
-    /// them any longer.
+    /// Checks the numbers. With larger numbers a run would not end, or its choices would no longer depend
+    /// on them.
     ///
     /// # Errors
     /// If a number is out of its range.
@@ -85,7 +85,7 @@ impl Strategy {
     }
 }
 
-/// Why a text names no strategy.
+/// Error in the spelling or in the numbers of a strategy.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum StrategyError {
     /// Not one of the names, or the wrong number of parameters.
@@ -93,7 +93,7 @@ pub enum StrategyError {
         "`{0}` is no strategy: use CL, IG, IG_WIN:RADIUS, IG_CL:ALPHA, COUNT:N or COUNT:N:D0, as in IG_CL:0.3"
     )]
     Unknown(String),
-    /// In a file: something else than a text.
+    /// Not a text, in a file.
     #[error(
         "a strategy is spelled in quotes: \"CL\", \"IG\", \"IG_WIN:RADIUS\", \"IG_CL:ALPHA\", \"COUNT:N\" or \"COUNT:N:D0\""
     )]
@@ -101,13 +101,13 @@ pub enum StrategyError {
     /// A number out of range.
     #[error("{name} is {}; it must lie in [{min}, {max}]", short(value))]
     Number {
-        /// Which.
+        /// Name of the number.
         name: &'static str,
-        /// Its value.
+        /// Value of the number.
         value: f64,
-        /// The smallest allowed.
+        /// Smallest allowed value.
         min: f64,
-        /// The largest allowed.
+        /// Largest allowed value.
         max: f64,
     },
 }
@@ -117,7 +117,7 @@ impl FromStr for Strategy {
 
     fn from_str(text: &str) -> Result<Self, StrategyError> {
         let unknown = || StrategyError::Unknown(text.to_owned());
-        // `COUNT:50:2`, or as earlier versions printed it, `COUNT(50, 2)`.
+        // `COUNT:50:2`, or `COUNT(50, 2)` as earlier versions printed it.
         let printed = text.strip_suffix(')').and_then(|text| text.split_once('('));
         let typed = printed.map(|(name, numbers)| {
             format!("{name}:{}", numbers.replace(',', ":").replace(' ', ""))
@@ -159,7 +159,7 @@ impl Serialize for Strategy {
     }
 }
 
-/// A strategy in a file: as it is spelled, or as earlier versions wrote it.
+/// A strategy in a file: as spelled now, or as earlier versions wrote it.
 #[derive(Deserialize)]
 #[serde(untagged)]
 enum Written {

@@ -1,4 +1,4 @@
-//! d_c(l, x): how far it is to each view-point.
+//! d_c(l, x): the travel cost of each view-point.
 
 mod label;
 #[cfg(test)]
@@ -10,15 +10,16 @@ use covmap::{Cell, Steps, neighbour, opposite};
 use label::{Label, in_cells};
 use spread::Spread;
 
-/// The shortest ways from one cell to all that can be reached from it.
+/// The shortest ways from one cell to all cells that can be reached from it.
 #[derive(Debug, Clone)]
 pub struct TravelCosts {
     labels: Vec<Label>,
     steps: Steps,
 }
 
-/// The shortest ways from `source` to all cells to which steps lead; a straight step is as long
-/// as the side of a cell, a diagonal one √2 times that.
+/// Computes the shortest ways from `source` to all cells to which steps lead.
+///
+/// A straight step is as long as the side of a cell, a diagonal step √2 times that.
 ///
 /// # Panics
 /// If the source lies outside the grid.
@@ -30,20 +31,20 @@ pub fn travel_costs(steps: Steps, source: Cell) -> TravelCosts {
 }
 
 impl TravelCosts {
-    /// d_c of the cell with a row-major index \[m\]; `None` if it cannot be reached, or
-    /// is not in the grid. Equal lengths are equal to the last bit, however they came about.
+    /// Returns d_c of the cell with a row-major index \[m\]; `None` if it cannot be reached, or
+    /// is not in the grid. Equal lengths are equal to the last bit, whatever steps they consist of.
     pub fn cost(&self, index: usize) -> Option<f64> {
         in_cells(*self.labels.get(index)?).map(|length| length * self.steps.grid().resolution())
     }
 
-    /// All cells that can be reached, by their row-major index, in ascending order.
+    /// Iterates over the row-major indices of all cells that can be reached, in ascending order.
     pub fn reached(&self) -> impl Iterator<Item = usize> {
         let is_reached = |(_, label): &(usize, &Label)| **label != label::UNREACHED;
         self.labels.iter().enumerate().filter(is_reached).map(|(index, _)| index)
     }
 
-    /// The nearest of some cells by their row-major index, the first of several; `None` if none
-    /// of them can be reached.
+    /// The nearest of some cells, given by their row-major indices, and the first of equally near cells;
+    /// `None` if none of them can be reached.
     pub(crate) fn nearest(&self, indices: &[usize]) -> Option<usize> {
         indices
             .iter()
@@ -52,10 +53,11 @@ impl TravelCosts {
             .min_by_key(|i| label::length(self.labels[*i]))
     }
 
-    /// The cells of the shortest way to a cell, without the source and with the cell itself;
-    /// empty for the source; `None` if the cell cannot be reached. Of several shortest ways
-    /// the one whose last step comes from the nearest cell, the first of these in row-major
-    /// order, and so on back to the source.
+    /// Returns the cells of the shortest way to a cell, without the source and with the cell itself.
+    ///
+    /// Empty for the source; `None` if the cell cannot be reached. Of several shortest ways it is the
+    /// one whose last step comes from the nearest cell, and from the first of these in row-major order;
+    /// the same holds for each step back to the source.
     pub fn path_to(&self, cell: Cell) -> Option<Vec<Cell>> {
         let grid = *self.steps.grid();
         let mut at = grid.index(cell)?;
@@ -71,7 +73,7 @@ impl TravelCosts {
 
     /// The cell before the last on the way to a cell; `None` for the source.
     fn previous(&self, at: usize) -> Option<usize> {
-        // Diagonal steps are longer, so they come from nearer cells.
+        // Diagonal steps are longer, so the cells that they come from are nearer to the source.
         const NEAREST_FIRST: [usize; 8] = [1, 3, 7, 5, 2, 0, 4, 6];
         let comes_by = |step: usize| {
             let from = neighbour(self.steps.grid(), at, opposite(step))?;
@@ -89,7 +91,7 @@ mod tests {
     use covmap::Grid;
     use nalgebra::Point2;
 
-    /// Costs in tenths of a cell from `S` over `.`, `##` where nothing can stand.
+    /// Compares costs in tenths of a cell from `S` over `.`; `##` is a cell that cannot be reached.
     #[track_caller]
     fn check(world: &str, expected: &str) {
         let rows: Vec<Vec<char>> = world.split_whitespace().map(|r| r.chars().collect()).collect();

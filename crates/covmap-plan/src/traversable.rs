@@ -1,38 +1,38 @@
-//! Where the robot can stand, and go.
+//! The view-points where the robot can stand, and the steps between them.
 
 mod tight;
 
 use crate::Reach;
 use covmap::{Cell, Grid, STEPS, Steps, opposite, step_between};
 
-/// Which view-points the robot can stand on, and which steps lead from one to the next.
+/// The traversable view-points, and the steps that lead from one to the next.
 ///
 /// Choice: a view-point is traversable if its cell is known with a most likely coverage of
 /// at most `traversable_coverage`, and no known cell of more has its centre nearer than the
-/// robot's radius. (Up to the nearest edge of such cells instead, doors of .8 m are closed at
-/// r = .1 m by one wrong cell at either post; the price is more bumps.) A step leads from one to
-/// the next if no such centre is under the body on the way. An unknown cell whose centre was
-/// under the robot's body counts as free: on coarse grids it is too near for the sensors and too
-/// large to be under the body entirely.
+/// robot's radius. (With the distance to the nearest edge of such cells instead, one wrong cell at
+/// either post closes doors of .8 m at r = .1 m; the price of centres is more bumps.) A step leads from
+/// one view-point to the next if no such centre is under the body on the way. An unknown cell whose
+/// centre was under the robot's body counts as free: on coarse grids such a cell is too near for the
+/// sensors and too large to be under the body entirely.
 ///
-/// What the body tried outweighs what the map says: a step that it has driven is possible in
-/// both directions, one at which it bumped is not, and where it stood it can stand again. A
-/// cell that it bumped at by a straight step, and never stood on, is no view-point.
+/// What the robot's body tried outweighs the map: a step that the robot drove is possible in both
+/// directions, a step at which it bumped is not, and where it stood it can stand again. A cell that
+/// the robot bumped at by a straight step, and never stood on, is no view-point.
 #[derive(Debug, Clone)]
 pub(crate) struct Traversable {
     grid: Grid,
-    /// The robot's radius, in cells, and how many cells around it may matter.
+    /// The robot's radius in cells, and the number of cells around it that may matter.
     radius_in_cells: f64,
     reach: i32,
     /// Cells that block a view-point, relative to it.
     disc: Vec<(i32, i32)>,
-    /// Cells that block a step, relative to where it begins, and neither of its ends.
+    /// Cells that block a step and neither of its ends, relative to where the step begins.
     between: [Vec<(i32, i32)>; 4],
-    /// How many blocking cells are too near to each view-point.
+    /// The number of blocking cells too near to each view-point.
     blockers: Vec<u32>,
     blocking: Vec<bool>,
     free: Vec<bool>,
-    /// The body was over the centre of the cell.
+    /// Whether the body was over the centre of each cell.
     under_body: Vec<bool>,
     stood: Vec<bool>,
     bumped: Vec<bool>,
@@ -105,7 +105,7 @@ impl Traversable {
         steps
     }
 
-    /// The same if some more cells were free.
+    /// The same if some more cells are free.
     pub(crate) fn with_free(&self, is_free: impl Fn(usize) -> bool) -> Self {
         let mut hoped = self.clone();
         (0..self.free.len())
@@ -114,7 +114,7 @@ impl Traversable {
         hoped
     }
 
-    /// Whether the robot may drive over a cell, by what is known of it or because its body was there.
+    /// Whether the robot may drive over a cell, by the map or because its body was there.
     pub(crate) fn is_free(&self, index: usize) -> bool {
         self.free[index] || self.under_body[index]
     }
@@ -125,22 +125,22 @@ impl Traversable {
         self.disc.iter().filter_map(move |(dx, dy)| self.grid.index(at.offset(*dx, *dy)))
     }
 
-    /// How many cells' centres are under the body.
+    /// The number of cells whose centres are under the body.
     pub(crate) fn body_cells(&self) -> usize {
         self.disc.len()
     }
 
-    /// Whether the robot did not try yet what lies at a view-point: it never bumped there.
+    /// Whether the robot never bumped at a view-point.
     pub(crate) fn is_untried(&self, index: usize) -> bool {
         !self.bumped[index]
     }
 
-    /// Whether the robot bumped when it took a step.
+    /// Whether a step ended with a bump.
     pub(crate) fn is_barred(&self, from: usize, step: usize) -> bool {
         self.barred[from] >> step & 1 == 1
     }
 
-    /// What keeps the robot from a view-point that it does not reach.
+    /// The obstacle that keeps the robot from a view-point that it does not reach.
     pub(crate) fn obstacle(&self, index: usize) -> Reach {
         if self.at(index) {
             Reach::CutOff
@@ -153,9 +153,8 @@ impl Traversable {
         }
     }
 
-    /// Takes over what is known of a cell: `Some(true)` if the robot may drive over it,
-    /// `Some(false)` if it blocks. Calls `changed` for every view-point that this opens or
-    /// closes.
+    /// Takes over the state of a cell: `Some(true)` if the robot may drive over it, `Some(false)` if it
+    /// blocks, `None` if it is unknown. Calls `changed` for every view-point that this opens or closes.
     pub(crate) fn update(
         &mut self,
         index: usize,
@@ -188,36 +187,36 @@ impl Traversable {
         }
     }
 
-    /// The robot stands on a cell's view-point.
+    /// Takes note that the robot stands on a cell's view-point.
     pub(crate) fn stand_on(&mut self, cell: Cell) {
         if let Some(index) = self.grid.index(cell) {
             self.stood[index] = true;
         }
     }
 
-    /// The robot's body was over the centre of a cell.
+    /// Takes note that the robot's body was over the centre of a cell.
     pub(crate) fn cover(&mut self, cell: Cell) {
         if let Some(index) = self.grid.index(cell) {
             self.under_body[index] = true;
         }
     }
 
-    /// The robot drove from one cell to a neighbour.
+    /// Takes note that the robot drove from one cell to a neighbour.
     pub(crate) fn drive(&mut self, from: Cell, to: Cell) {
         self.try_step(from, to, |t| (&mut t.driven, &mut t.barred));
     }
 
-    /// The robot bumped into something when it drove from one cell to a neighbour.
+    /// Takes note that the robot bumped into something as it drove from one cell to a neighbour.
     pub(crate) fn bump(&mut self, from: Cell, to: Cell) {
         self.try_step(from, to, |t| (&mut t.barred, &mut t.driven));
-        // On a diagonal it may have clipped what stands beside.
+        // On a diagonal step the robot may have clipped an obstacle beside it.
         let is_straight = step_between(from, to).is_some_and(|step| step % 2 == 0);
         if let Some(index) = self.grid.index(to).filter(|_| is_straight) {
             self.bumped[index] = true;
         }
     }
 
-    /// Takes note, in both directions, of how a step ended: the last time counts.
+    /// Takes note of how a step ended, for both directions; the last attempt counts.
     fn try_step(
         &mut self,
         from: Cell,
@@ -240,7 +239,7 @@ impl Traversable {
     }
 }
 
-/// How far a place is from the line of a step that begins at the origin [cells].
+/// The distance of a place from the line of a step that begins at the origin [cells].
 fn distance_from_step((dx, dy): (i32, i32), (x, y): (i32, i32)) -> f64 {
     let [dx, dy, x, y] = [dx, dy, x, y].map(f64::from);
     let squared = dx * dx + dy * dy;
@@ -304,7 +303,7 @@ mod tests {
         assert!(t.at(8) && t.is_untried(8) && t.is_barred(8, 5));
         t.bump(Cell::new(1, 2), corner);
         assert!(!t.at(8) && !t.is_untried(8) && t.is_barred(8, 4));
-        // From another side the body got there, and may go back; not as it bumped.
+        // The body got there from another side and may go back that way, but not by the step of the bump.
         t.stand_on(corner);
         t.drive(Cell::new(2, 1), corner);
         assert!(t.at(8) && t.steps().from(8) == 0b0100_0000);
@@ -322,14 +321,14 @@ mod tests {
 
     #[test]
     fn a_diagonal_needs_room_for_the_body_and_not_the_cells_beside_it() {
-        // Of cells of .5 m the body is over neither side of a diagonal, .354 m away; of .3 m it
-        // is over both, .212 m away, but at neither end; of .2 m it is over them at both ends.
+        // With cells of .5 m the body is over neither cell beside a diagonal, .354 m away; with .3 m it
+        // is over both, .212 m away, but at neither end; with .2 m it is over them at both ends.
         for (resolution, steps) in [(0.5, 0b1111_1110), (0.3, 0b0111_1100), (0.2, 0b0111_1100)] {
             let mut t = all_free(resolution);
             t.update(5, Some(false), |_| ());
             assert_eq!(steps_from_the_middle(&t), steps, "{resolution}");
         }
-        // Where nothing is known beside it, it is tried.
+        // If the cells beside a diagonal are unknown, the robot tries it.
         let grid = Grid::new(Point2::origin(), 0.2, 2, 2).unwrap();
         let mut t = Traversable::new(grid, 0.27);
         [0, 3].into_iter().for_each(|i| t.update(i, Some(true), |_| ()));

@@ -1,4 +1,4 @@
-//! How far one turns on a way.
+//! The turns on a path.
 
 use covmap::Cell;
 use nalgebra::Vector2;
@@ -8,8 +8,8 @@ pub(crate) fn straight(from: Cell, to: Cell) -> Vector2<f64> {
     Vector2::new(f64::from(to.x - from.x), f64::from(to.y - from.y))
 }
 
-/// How far one turns on a way of straight pieces: the angles between each and the next, at most π,
-/// summed up \[rad\]. A piece of no length has no direction, and does not count.
+/// Returns the sum of the turns on a path of straight pieces \[rad\]: the angle between each piece and
+/// the next, at most π each. A piece of length 0 has no direction and does not count.
 pub fn turns(pieces: impl IntoIterator<Item = Vector2<f64>>) -> f64 {
     let pieces: Vec<_> = pieces.into_iter().filter(|piece| piece.norm() > 0.0).collect();
     let angle =

@@ -4,10 +4,10 @@ use covmap::{Cell, Grid};
 
 /// "A local window until this has been explored … no need for the robot to return."
 ///
-/// Reading: a circle around where it was opened. It is done when no candidate inside holds
-/// an open cell inside in sight; then its cells are no reasons any more, and the next window
-/// opens around the nearest candidate left. Deviation: when no candidate is left at all, the
-/// cells of closed windows are reasons again, so that a run ends with nothing open.
+/// Reading: the window is a circle around the cell where it was opened. It is explored when no candidate
+/// inside has an open cell of the window in sight. Then its cells are no reasons any more, and the next
+/// window opens around the nearest candidate left. Deviation: when no candidate is left at all, the
+/// cells of closed windows are reasons again, so a run ends with no cell open.
 #[derive(Debug, Clone)]
 pub(crate) struct Window {
     grid: Grid,
@@ -17,12 +17,12 @@ pub(crate) struct Window {
 }
 
 impl Window {
-    /// No window is open, none was.
+    /// No window is open, and none was.
     pub(crate) fn new(grid: Grid, radius: f64) -> Self {
         Self { grid, radius, center: None, closed: vec![false; grid.len()] }
     }
 
-    /// Where the open window is.
+    /// The centre of the open window.
     pub(crate) fn center(&self) -> Option<Cell> {
         self.center
     }

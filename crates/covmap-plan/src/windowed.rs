@@ -1,4 +1,4 @@
-//! Candidates of IG_WIN: a window is opened, explored, and closed.
+//! Candidates of IG_WIN: the planner opens, explores and closes a window.
 
 use crate::Planner;
 use crate::planner::Candidates;
@@ -6,7 +6,7 @@ use crate::window::Window;
 use covmap::{Cell, CoverageMap};
 
 impl Planner {
-    /// The candidates; for IG_WIN those inside the window, which is opened and closed here.
+    /// The candidates; for IG_WIN those inside the window, which this opens and closes.
     pub(crate) fn windowed_candidates(
         &mut self,
         map: &CoverageMap,
@@ -44,7 +44,7 @@ impl Planner {
             if let Some(nearest) = nearest {
                 self.open_window(self.grid.cell(nearest));
                 if !left.indices.iter().any(|i| self.window_offers(*i)) {
-                    // All that the nearest candidate sees lies outside of its window.
+                    // All cells in sight of the nearest candidate lie outside of its window.
                     left.indices = vec![nearest];
                     return Some(left);
                 }
@@ -63,7 +63,7 @@ impl Planner {
         closed.into_iter().for_each(|index| self.update_limit(map, index));
     }
 
-    /// Whether a candidate lies in the window and holds an open cell of it in sight.
+    /// Whether a candidate lies in the window and has an open cell of the window in sight.
     fn window_offers(&self, candidate: usize) -> bool {
         let Some(window) = &self.window else { return true };
         let is_open = |&(index, distance): &(usize, f32)| {

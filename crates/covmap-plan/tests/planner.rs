@@ -1,4 +1,4 @@
-//! The planner on random maps: what it keeps equals what the literal equations say.
+//! The planner on random maps: its caches agree with the literal equations.
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
 use covmap::{Cell, CoverageMap, Grid, Raster};
@@ -25,7 +25,7 @@ struct Setting {
     planner: Planner,
 }
 
-/// What is in sight is a reason, whatever is expected to change.
+/// Parameters with which every open cell in sight is a reason, whatever its expected change.
 fn in_sight() -> PlannerParameters {
     PlannerParameters { reason: Reason::InSight, ..PlannerParameters::standard() }
 }
@@ -80,7 +80,7 @@ fn some_ranges() -> impl Generator<Value = Vec<Range>> {
     prop::collection::vec(range, 24)
 }
 
-/// Models that differ in all that the fast evaluation makes use of.
+/// Models that differ in every property that the fast evaluation uses.
 fn some_models() -> impl Generator<Value = ModelParameters> {
     let gamma = (0.02..0.4f64, 0.0..0.4f64, prop_oneof![Just(0.0), 0.0..0.3f64]);
     let evidence = (gamma, prop::sample::select(vec![0.0, 0.1, 0.15, 0.35]), 0.4..=1.0f64);
@@ -105,7 +105,7 @@ fn some_models() -> impl Generator<Value = ModelParameters> {
     )
 }
 
-/// Sensors around the robot, so far from its centre \[m\].
+/// Sensors around the robot, at this distance from its centre \[m\].
 fn ring(offset: f64) -> SonarRing {
     let beam = |i: u32| {
         let angle = 2.0 * PI * f64::from(i) / 24.0;
@@ -129,8 +129,8 @@ fn strategies() -> impl Generator<Value = Strategy> {
     ])
 }
 
-/// Compares the five best of a decision, which evaluates what may be among them, with those of all
-/// candidates.
+/// Compares the five best of a decision, which evaluates the candidates that may be among them, with
+/// the five best of all candidates.
 fn check_decision(s: &mut Setting, from: Cell) -> Result<(), TestCaseError> {
     let decision = s.planner.clone().choose(&s.map, from);
     let mut table = s.planner.candidate_table(&s.map, from);
@@ -161,7 +161,7 @@ fn check_gains(s: &mut Setting, stencil: &Stencil, from: Cell) -> Result<(), Tes
     Ok(())
 }
 
-/// The same at the origin, after each of some scans.
+/// Compares decisions and gains at the origin after each of some scans.
 fn check_gains_after_every_scan(
     mut s: Setting,
     scans: Vec<(f64, f64, Vec<Range>)>,
@@ -250,7 +250,7 @@ proptest! {
         s.stand(0.0, 0.0);
         let home = s.map.grid().cell_at(Point2::origin()).unwrap();
         for (x, y, ranges) in scans {
-            // What earlier decisions evaluated and bounded is kept.
+            // The planner keeps the gains and bounds of earlier decisions.
             s.scan(x, y, &ranges);
             let decision = s.planner.choose(&s.map, home);
             let mut table = s.planner.clone().candidate_table(&s.map, home);

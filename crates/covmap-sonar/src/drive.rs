@@ -1,21 +1,21 @@
-//! How a drive ends.
+//! Outcomes of drives.
 
 use nalgebra::Point2;
 
-/// How a drive ended.
+/// Outcome of a drive.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Drive {
-    /// At its goal.
+    /// The robot arrived at its goal.
     Arrived,
-    /// Before something solid.
+    /// The robot stopped before something solid.
     Bumped {
-        /// The last place without contact, a micrometre before it \[m\].
+        /// The last place without contact, a micrometre before the contact \[m\].
         at: Point2<f64>,
     },
-    /// On the way, touching nothing: somebody or something stopped the robot there. No simulated robot
-    /// does.
+    /// A person or a device stopped the robot on the way, without contact. No simulated robot ends
+    /// a drive so.
     Stopped {
-        /// Where it stands \[m\].
+        /// Place of the robot \[m\].
         at: Point2<f64>,
     },
 }

@@ -1,11 +1,10 @@
 //! Rings of range sensors, their beams, and the scans that they measure.
 //!
-//! The device of Stachniss & Burgard (2003): a B21r with 24 sonars. The principal types are
-//! [`SonarRing`], any number of range sensors on a robot, and [`Scan`], what all of them
-//! measured at one pose.
+//! The device of Stachniss & Burgard (2003) is a B21r with 24 sonars. The principal types are [`SonarRing`],
+//! any number of range sensors on a robot, and [`Scan`], the readings of all of them at one pose.
 //!
-//! This crate knows nothing of maps, of how a measurement is explained, or of how it comes
-//! about: it describes the device and its readings.
+//! This crate knows nothing of maps, and neither explains nor simulates measurements: it describes
+//! the device and its readings.
 //!
 //! # Units
 //! Metres, radians counter-clockwise, seconds.

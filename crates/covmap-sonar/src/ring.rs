@@ -7,23 +7,23 @@ use std::f64::consts::{PI, TAU};
 
 /// The largest number of sensors on a ring.
 const MAX_SENSORS: usize = 4096;
-/// No sensor is farther from the robot's centre, and none measures farther [m].
+/// Largest distance of a sensor from the robot's centre, and largest range \[m\].
 const MAX_LENGTH: f64 = 1000.0;
 
-/// One range sensor: where it sits, how wide and how far it listens.
+/// One range sensor: its place, its cone and its ranges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Beam {
     /// `robot_from_sensor`: the sensor looks along its own x axis \[m, rad\].
     pub pose: Isometry2<f64>,
-    /// Half of the opening angle of its cone \[rad\]; 0 for a line.
+    /// Half of the opening angle of the cone \[rad\]; 0 for a line.
     pub half_angle: f64,
-    /// The shortest range that it can measure \[m\].
+    /// Shortest range that the sensor can measure \[m\].
     pub min_range: f64,
-    /// The longest range that it can measure \[m\].
+    /// Longest range that the sensor can measure \[m\].
     pub max_range: f64,
 }
 
-/// Why a ring cannot be made.
+/// Reason why a ring cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum RingError {
     /// The number of sensors is out of range.
@@ -45,7 +45,7 @@ pub enum RingError {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SensorSpecification {
-    /// Position before the robot's centre \[m\].
+    /// Position in front of the robot's centre \[m\].
     pub x: f64,
     /// Position to the left of the robot's centre \[m\].
     pub y: f64,
@@ -64,10 +64,10 @@ pub struct SensorSpecification {
 pub enum RingSpecification {
     /// The 24 sonars of a B21r's enclosure ring, [`SonarRing::b21r`].
     B21r,
-    /// Equal sensors evenly on a circle round the robot's centre, looking outwards;
-    /// the first at half a step left of the heading, then counter-clockwise.
+    /// Equal sensors, evenly spaced on a circle round the robot's centre and looking outwards. The
+    /// first is half a step left of the heading; the others follow counter-clockwise.
     Circle {
-        /// How many.
+        /// Number of sensors.
         count: usize,
         /// Radius of the circle \[m\].
         radius: f64,
@@ -89,10 +89,10 @@ pub struct SonarRing {
 }
 
 impl SonarRing {
-    /// A ring of given beams.
+    /// Creates a ring of given beams.
     ///
     /// # Errors
-    /// If there are none or too many, or a beam has impossible numbers.
+    /// If there are no beams or too many, or a beam has impossible numbers.
     pub fn new(beams: Vec<Beam>) -> Result<Self, RingError> {
         if !(1..=MAX_SENSORS).contains(&beams.len()) {
             return Err(RingError::Count(beams.len()));
@@ -112,7 +112,7 @@ impl SonarRing {
         Ok(Self { beams })
     }
 
-    /// The ring that a file describes.
+    /// Returns the ring that a file describes.
     ///
     /// # Errors
     /// As [`SonarRing::new`].
@@ -142,7 +142,7 @@ impl SonarRing {
         Self::new(sensors.iter().map(beam).collect())
     }
 
-    /// The enclosure ring of a B21r: 24 Polaroid 6500 sonars at radius .250 m, axes at
+    /// Returns the enclosure ring of a B21r: 24 Polaroid 6500 sonars at radius .250 m, axes at
     /// ±7.5°, ±22.5°, …, none straight ahead (Player's `b21r_rflex_lms200.cfg`), cones of
     /// half-angle 12.5°, ranges .26–10.7 m.
     pub fn b21r() -> Self {
@@ -156,12 +156,12 @@ impl SonarRing {
         .unwrap_or_else(|e| unreachable!("the preset is valid: {e}"))
     }
 
-    /// The sensors, in the order of a scan's ranges.
+    /// Returns the sensors, in the order of a scan's ranges.
     pub fn beams(&self) -> &[Beam] {
         &self.beams
     }
 
-    /// Whether a scan has one reading for each sensor.
+    /// Returns whether a scan has one reading for each sensor.
     pub fn fits(&self, scan: &Scan) -> bool {
         scan.ranges.len() == self.beams.len()
     }

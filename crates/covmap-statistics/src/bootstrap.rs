@@ -5,17 +5,17 @@ use crate::{Estimate, resample, stream, uniform};
 /// Observations in groups; the groups are independent of each other, their members need not be.
 pub type Grouped<T> = Vec<Vec<T>>;
 
-/// More resamples than this are not drawn.
+/// The largest number of resamples that are drawn.
 const MOST: usize = 1_000_000;
-/// The fewest resamples with a statistic for which its error is known.
+/// The smallest number of resamples with a value from which the error is estimated.
 const FEWEST: usize = 20;
 
-/// The statistic of all observations with its standard error, by drawing whole groups with
-/// replacement, `times` times, at most a million. `None` if the statistic has no value for all of them.
+/// Returns the statistic of all observations with its standard error; `None` if the statistic has
+/// no value for them. Whole groups are drawn with replacement, `times` times, at most a million.
 ///
-/// The spread of a mean over k groups that are drawn so is too small by √((k − 1)/k); that is
-/// put right. Resamples for which the statistic has no value are left out. The same seed gives
-/// the same numbers.
+/// The spread of a mean over k groups that are drawn so is too small by the factor √((k − 1)/k),
+/// which is corrected. Resamples for which the statistic has no value are left out. The same seed
+/// gives the same numbers.
 pub fn bootstrap<T>(
     groups: &[Vec<T>],
     times: usize,

@@ -1,4 +1,4 @@
-//! A number that was measured, and how sure it is.
+//! A measured number with its standard error.
 
 use crate::Spread;
 use serde::{Deserialize, Serialize};
@@ -14,29 +14,28 @@ const ALIKE: usize = 3;
 /// interval: value ± t(1 − (1 − level)/2; ν) · standard_error
 /// P(true ≤ bound): Student's t with ν degrees of freedom at (bound − value) / standard_error
 /// ```
-/// With few clusters the quantiles of a bootstrap are too narrow; Student's t with one degree
-/// of freedom less than there are clusters is not.
+/// With few groups the quantiles of a bootstrap are too narrow; those of Student's t with ν one
+/// less than the number of groups are not.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
-    /// The number.
+    /// Value of the number.
     pub value: f64,
-    /// Its standard error, in the same unit.
+    /// Standard error of the value, in the same unit.
     pub standard_error: f64,
-    /// How many independent groups it rests on. With fewer than two nothing can be said of its
-    /// error.
+    /// Number of independent groups behind the value. With fewer than two groups its error is unknown.
     pub groups: usize,
 }
 
 impl Estimate {
-    /// The mean of independent values; `None` for none.
+    /// Returns the mean of independent values; `None` for no values.
     pub fn of_mean(values: &[f64]) -> Option<Self> {
         let Spread { n, mean, deviation, .. } = Spread::of(values)?;
         let standard_error = deviation.map_or(f64::INFINITY, |sd| sd / (n as f64).sqrt());
         Some(Self { value: mean, standard_error, groups: n })
     }
 
-    /// The central interval that holds the true value with a probability of `level` in \[0, 1);
-    /// `None` for another level, and with fewer than two groups.
+    /// Returns the central interval that holds the true value with a probability of `level` in
+    /// \[0, 1); `None` for another level, and with fewer than two groups.
     pub fn interval(&self, level: f64) -> Option<(f64, f64)> {
         if !(0.0..1.0).contains(&level) {
             return None;
@@ -46,32 +45,33 @@ impl Estimate {
         Some((self.value - half, self.value + half))
     }
 
-    /// The p-value of "the true value is not below `bound`": small if it is below. 1 with
-    /// fewer than two groups, and for a bound that is no number.
+    /// Returns the p-value of "the true value is not below `bound`": small if the true value is
+    /// below. The p-value is 1 with fewer than two groups, and for a bound that is no number.
     pub fn p_below(&self, bound: f64) -> f64 {
         self.student().filter(|_| !bound.is_nan()).map_or(1.0, |student| {
             if self.standard_error > 0.0 {
                 student.cdf((self.value - bound) / self.standard_error)
             } else {
-                // All groups are alike: of few of them that says nothing.
+                // All groups are alike: a few alike groups say nothing of the error.
                 f64::from(u8::from(self.groups < ALIKE || self.value >= bound))
             }
         })
     }
 
-    /// The p-value of "the true value is not above `bound`": small if it is above. 1 with
-    /// fewer than two groups.
+    /// Returns the p-value of "the true value is not above `bound`": small if the true value is
+    /// above. The p-value is 1 with fewer than two groups, and for a bound that is no number.
     pub fn p_above(&self, bound: f64) -> f64 {
         Self { value: -self.value, ..*self }.p_below(-bound)
     }
 
-    /// The p-value of two one-sided tests of "the true value is not between these bounds":
-    /// small if it is (equivalence).
+    /// Returns the p-value of two one-sided tests of "the true value is not between these bounds":
+    /// small if the true value is between them (equivalence).
     pub fn p_between(&self, low: f64, high: f64) -> f64 {
         self.p_above(low).max(self.p_below(high))
     }
 
-    /// The p-value of "the true value lies between these bounds": small if it lies outside.
+    /// Returns the p-value of "the true value lies between these bounds": small if the true value
+    /// lies outside.
     pub fn p_outside(&self, low: f64, high: f64) -> f64 {
         (2.0 * self.p_below(low).min(self.p_above(high))).min(1.0)
     }
@@ -89,7 +89,7 @@ impl Estimate {
         let normal = Normal::standard();
         let z = normal.inverse_cdf(1.0 - level) + normal.inverse_cdf(power);
         let ratio = z * self.standard_error / (self.value - bound);
-        (ratio.is_finite() && self.groups >= 2).then(|| self.groups as f64 * ratio * ratio)
+        (ratio.is_finite() && self.groups >= 2).then_some(self.groups as f64 * ratio * ratio)
     }
 
     fn student(&self) -> Option<StudentsT> {

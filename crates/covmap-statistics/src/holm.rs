@@ -1,8 +1,7 @@
 //! Many tests at once.
 
-/// The p-values of a family of tests, adjusted by Holm's step-down procedure, in the same
-/// order: whoever rejects those below .05 rejects a true hypothesis at most once in twenty
-/// families.
+/// Returns the p-values of a family of tests, adjusted by Holm's step-down procedure, in the same
+/// order. Rejecting all hypotheses below .05 rejects a true one in at most one of twenty families.
 ///
 /// # Formula
 /// ```text

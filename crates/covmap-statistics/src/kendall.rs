@@ -1,9 +1,9 @@
-//! Whether two rankings agree.
+//! Agreement of two rankings.
 
 use std::cmp::Ordering;
 
-/// Kendall's τ_b of two equally long lists: 1 if they rank alike, −1 if the other way round;
-/// `None` if one of them has no order (fewer than two different values).
+/// Returns Kendall's τ_b of two equally long lists: 1 if they rank alike, −1 if the other way
+/// round; `None` if a list has no order (fewer than two different values).
 ///
 /// # Formula
 /// ```text

@@ -1,11 +1,11 @@
-//! What measurements say, and how sure they are: proper scores of posteriors, means with their errors,
-//! resampling, tests, and the random numbers of all of them.
+//! Statistics of measurements and their errors: proper scores of posteriors, means with their
+//! errors, resampling, tests, and the random numbers for all of them.
 //!
-//! The unit of a series of runs is a paired (start, seed). Runs from the same start resemble each other, so
-//! starts are resampled ([`bootstrap`]); an [`Estimate`] then knows how sure it is, and [`holm`] how much of
-//! that is left when many claims are tested at once.
+//! The unit of a series of runs is a paired (start, seed). Runs from the same start resemble each
+//! other, so starts are resampled ([`bootstrap`]). An [`Estimate`] has its standard error, and
+//! [`holm`] adjusts the p-values when many claims are tested at once.
 //!
-//! This crate knows nothing of worlds, models and planners.
+//! This crate knows nothing of worlds, models or planners.
 //!
 //! # Units
 //! Nats; coverage in \[0, 1\].

@@ -1,16 +1,16 @@
-//! How well a posterior explains the true coverage of a cell: proper scores.
+//! Proper scores of a posterior against the true coverage of a cell.
 //!
 //! A truth between the bins k and k + 1, at the fraction t of the way, counts as bin k with
 //! the weight 1 − t and as bin k + 1 with the weight t.
 
 use covmap::{bin_coverage, lower_bin};
 
-/// The share of every posterior that is spread evenly over its bins before a likelihood is
-/// taken, so that no truth is impossible: η, the same for every method that is compared.
+/// η: the share of every posterior that is spread evenly over its bins before a likelihood is
+/// taken. No truth is then impossible. The share is the same for every method that is compared.
 pub const LIKELIHOOD_FLOOR: f64 = 0.001;
 
-/// The log-likelihood of the true coverage \[nats\], with the floor η ([`LIKELIHOOD_FLOOR`]
-/// unless the choice of the floor is what is studied):
+/// Returns the log-likelihood of the true coverage \[nats\]. The floor η is [`LIKELIHOOD_FLOOR`]
+/// unless the choice of the floor is under study:
 ///
 /// ```text
 /// (1 − t)·log p'_k + t·log p'_{k+1},   p' = (1 − η)·p + η/n
@@ -25,8 +25,8 @@ pub fn log_likelihood(probabilities: &[f64], coverage: f64, floor: f64) -> f64 {
     (1.0 - t) * log(probabilities[k]) + t * log(probabilities[k + 1])
 }
 
-/// The continuous ranked probability score against the true coverage x, 0 for a posterior
-/// that has all its mass there; with F the cumulated posterior,
+/// Returns the continuous ranked probability score against the true coverage x. The score is 0 for
+/// a posterior with all its mass at x. With F the cumulated posterior,
 ///
 /// ```text
 /// CRPS = ∫₀¹ (F(c) − [c ≥ x])² dc
@@ -48,9 +48,9 @@ pub fn crps(probabilities: &[f64], coverage: f64) -> f64 {
     score
 }
 
-/// The randomised probability integral transform: uniform over \[0, 1\] if truths are drawn
-/// from the posteriors. `u` and `v` are independent uniform numbers in \[0, 1): u places the
-/// value within the mass of the truth's bin, v chooses the bin below or above the truth.
+/// Returns the randomised probability integral transform, which is uniform over \[0, 1\] if truths
+/// are drawn from the posteriors. `u` and `v` are independent uniform numbers in \[0, 1): u places
+/// the value within the mass of the truth's bin, v chooses the bin below or above the truth.
 ///
 /// # Panics
 /// Unless there are at least two bins.
@@ -60,8 +60,8 @@ pub fn randomised_pit(probabilities: &[f64], coverage: f64, u: f64, v: f64) -> f
     probabilities[..bin].iter().sum::<f64>() + u * probabilities[bin]
 }
 
-/// The probability, over u and v, that [`randomised_pit`] lies in the central `level` of
-/// \[0, 1\]: `level` in the mean, if truths are drawn from the posteriors, without any draw.
+/// Returns the probability, over u and v, that [`randomised_pit`] lies in the central `level` of \[0, 1\].
+/// Its mean is `level` if truths are drawn from the posteriors. The function itself draws nothing.
 ///
 /// # Panics
 /// Unless there are at least two bins.
@@ -80,10 +80,10 @@ pub fn central(probabilities: &[f64], coverage: f64, level: f64) -> f64 {
     (1.0 - t) * inside(k) + t * inside(k + 1)
 }
 
-/// Whether the central interval of a posterior holds the true coverage: from half a bin below
-/// the first bin at which the cumulated posterior reaches (1 − level)/2 to half a bin above
-/// the first at which it reaches (1 + level)/2. Bins are wide, so that more truths than
-/// `level` are held by a posterior that is right; [`central`] has no such excess.
+/// Returns whether the central interval of a posterior holds the true coverage. The interval reaches from
+/// half a bin below the first bin at which the cumulated posterior reaches (1 − level)/2 to half a bin above
+/// the first bin at which it reaches (1 + level)/2. Bins are wide, so the intervals of a posterior that is
+/// right hold more truths than `level`; [`central`] has no such excess.
 ///
 /// # Panics
 /// Unless there are at least two bins.
@@ -153,7 +153,7 @@ mod tests {
         ) {
             let steps = || (0..200).map(|i| (f64::from(i) + 0.5) / 200.0);
             let (k, t) = lower_bin(x, 11);
-            // v falls below t with probability t: once each, with their weights.
+            // v falls below t with probability t: one v of either kind, with its weight.
             let share = |v: f64| {
                 let is_in = |u: f64| (randomised_pit(&p, x, u, v) - 0.5).abs() <= 0.5 * level;
                 steps().filter(|u| is_in(*u)).count() as f64 / 200.0

@@ -4,10 +4,10 @@ use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
 use std::f64::consts::TAU;
 
-/// An independent generator for each (seed, purpose, counter).
+/// Returns an independent generator for each (seed, purpose, counter).
 ///
-/// The three are hashed (FNV-1a, then SplitMix64's finaliser) into state and stream of a
-/// PCG64; it does not depend on the platform.
+/// The three are hashed (FNV-1a, then SplitMix64's finaliser) into state and stream of a PCG64. The
+/// generator does not depend on the platform.
 pub fn stream(seed: u64, purpose: &str, counter: u64) -> Pcg64 {
     let hash = |salt: u64| {
         let words = [salt, seed, counter].map(u64::to_le_bytes);
@@ -26,13 +26,13 @@ fn mixed(mut z: u64) -> u64 {
     z ^ (z >> 31)
 }
 
-/// Uniform in \[0, 1\).
+/// Draws a uniform number in \[0, 1\).
 pub fn uniform(rng: &mut Pcg64) -> f64 {
     let bits = (rng.next_u64() >> 11) as f64;
     bits * (1.0 / 9_007_199_254_740_992.0)
 }
 
-/// A standard normal variate (Box–Muller), from exactly two uniform ones.
+/// Draws a standard normal variate (Box–Muller), from exactly two uniform ones.
 pub fn normal(rng: &mut Pcg64) -> f64 {
     let radius = (-2.0 * libm::log(1.0 - uniform(rng))).sqrt();
     radius * libm::cos(TAU * uniform(rng))

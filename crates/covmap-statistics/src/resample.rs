@@ -1,6 +1,6 @@
 //! Drawing groups with replacement.
 
-/// As many groups as there are, drawn with replacement: their numbers, in the order of the draws.
+/// Draws as many groups as there are, with replacement, and returns their numbers in the order of the draws.
 ///
 /// `uniform` draws uniform numbers in \[0, 1).
 pub fn resample(groups: usize, mut uniform: impl FnMut() -> f64) -> Vec<usize> {
@@ -13,7 +13,7 @@ pub fn resample(groups: usize, mut uniform: impl FnMut() -> f64) -> Vec<usize> {
     (0..groups).map(|_| draw()).collect()
 }
 
-/// The central 95 % of the values of resamples that have one; `None` if none has.
+/// Returns the central 95 % interval of the values of resamples; `None` if no resample has a value.
 pub fn central_interval(values: impl Iterator<Item = Option<f64>>) -> Option<(f64, f64)> {
     let mut values: Vec<f64> = values.flatten().filter(|v| v.is_finite()).collect();
     values.sort_by(f64::total_cmp);

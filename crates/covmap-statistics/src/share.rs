@@ -1,10 +1,10 @@
-//! How often something happened.
+//! Shares of successes.
 
 use crate::Estimate;
 
-/// The share of successes among independent trials as an estimate, after Agresti and Coull:
-/// two successes and two failures are added, so that "always" is not certain. `None` without
-/// trials, and for more successes than trials.
+/// Returns the share of successes among independent trials as an estimate, after Agresti and Coull.
+/// Two successes and two failures are added, so "always" is not certain. `None` without trials, and
+/// for more successes than trials.
 ///
 /// # Formula
 /// ```text

@@ -1,24 +1,24 @@
-//! The mean of a series of runs, and how sure it is.
+//! The mean of a series of runs, with its confidence interval.
 
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Mean, standard deviation and interval of some numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spread {
-    /// How many.
+    /// Number of values.
     pub n: usize,
-    /// Their mean.
+    /// Mean of the values.
     pub mean: f64,
-    /// Their standard deviation, with n − 1 below the line; `None` for a single one.
+    /// Standard deviation of the values, with n − 1 in the denominator; `None` for a single value.
     pub deviation: Option<f64>,
-    /// The 95 % confidence interval of the mean by Student's t; `None` for a single one.
+    /// The 95 % confidence interval of the mean by Student's t; `None` for a single value.
     pub interval: Option<(f64, f64)>,
 }
 
 impl Spread {
-    /// Of some numbers; `None` of none.
+    /// Returns the spread of some numbers; `None` for none.
     ///
-    /// The numbers are taken as independent: runs that share a start are not quite.
+    /// The numbers are taken as independent, which runs that share a start are not quite.
     pub fn of(values: &[f64]) -> Option<Self> {
         let n = values.len();
         let count = n as f64;

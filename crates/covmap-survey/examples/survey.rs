@@ -1,4 +1,4 @@
-//! Surveys a room from the scans of a laser, and writes the survey as it stands in a file.
+//! Surveys a room from the scans of a laser, and prints the survey as a file holds it.
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
 use covmap_sonar::{Beam, Range, Scan, SonarRing};

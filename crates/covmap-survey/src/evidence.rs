@@ -1,4 +1,4 @@
-//! What the laser saw of every cell.
+//! The evidence of the laser about every cell.
 
 use super::near::Near;
 use super::view::{axis, is_pose};
@@ -9,27 +9,27 @@ use covmap_world::WorldError;
 use covmap_world::geometry::cells_along;
 use nalgebra::{Point2, Vector2};
 
-/// How beams met one cell.
+/// Counts of the beams that met one cell.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct Evidence {
-    /// Beams that went through.
+    /// Beams that went through the cell.
     pub passed: u32,
-    /// Echoes from here that a primitive of the survey explains.
+    /// Echoes from the cell that a primitive of the survey explains.
     pub explained: u32,
-    /// Echoes from here that nothing explains: what moved, what is too small, what the survey
-    /// lacks.
+    /// Echoes from the cell that no primitive explains: from moving things, from things too small,
+    /// or from gaps in the survey.
     pub unexplained: u32,
-    /// In how many scans there were such echoes.
+    /// The number of scans with such echoes.
     pub unexplained_scans: u32,
-    /// Echoes from the front behind which this cell is solid all over.
+    /// Echoes from the front behind which the whole cell is solid.
     pub behind: u32,
 }
 
 impl Survey {
-    /// What the beams of all scans say about every cell.
+    /// Counts the beams of all scans in every cell.
     ///
-    /// An echo behind `max_range`, or no echo, says that the beam went through up to there, or
-    /// up to `free_without_echo`. Scans whose pose is not finite are passed over.
+    /// An echo behind `max_range` counts as a beam that went through up to there; no echo, as one
+    /// that went through up to `free_without_echo`. Scans whose pose is not finite are passed over.
     ///
     /// # Errors
     /// If a primitive has an impossible number.
@@ -68,10 +68,12 @@ impl Survey {
         Ok(witness.evidence)
     }
 
-    /// The cells that the laser saw and that the survey explains: a beam went through or ended
-    /// there, or they are solid right behind a front that a beam met. Not the cells in which
-    /// more than `max_unexplained` of the beams ended without an explanation, nor those where
-    /// this happened in `min_views` scans: there is something, if only glass.
+    /// Returns the cells that the laser saw and that the survey explains.
+    ///
+    /// In these cells a beam went through or ended, or they are solid right behind a front that a
+    /// beam met. Excluded are the cells in which more than `max_unexplained` of the beams ended
+    /// without an explanation, and the cells with unexplained echoes in `min_views` scans: some
+    /// object is there, if only glass.
     ///
     /// # Errors
     /// As [`Survey::evidence`].
@@ -87,7 +89,7 @@ impl Survey {
 }
 
 impl Evidence {
-    /// Whether the laser saw the cell, and what it saw there is explained.
+    /// Returns whether the laser saw the cell, and the survey explains the echoes there.
     pub fn is_seen(&self, parameters: &SurveyParameters) -> bool {
         let [passed, explained, unexplained, behind] =
             [self.passed, self.explained, self.unexplained, self.behind].map(f64::from);
@@ -107,7 +109,7 @@ struct Witness<'a> {
 }
 
 impl Witness<'_> {
-    /// A beam went through to a range.
+    /// Counts a beam that went through up to a range.
     fn pass(&mut self, eye: Point2<f64>, direction: Vector2<f64>, range: f64) {
         let grid = *self.evidence.grid();
         let Some((from, to)) = inside(&grid, eye, direction, range) else { return };
@@ -117,7 +119,7 @@ impl Witness<'_> {
         });
     }
 
-    /// A beam ended.
+    /// Counts a beam that ended at a range.
     fn echo(&mut self, eye: Point2<f64>, direction: Vector2<f64>, range: f64) {
         let at = eye + direction * range;
         self.pass(eye, direction, range);
@@ -160,7 +162,7 @@ impl Witness<'_> {
     }
 }
 
-/// The part of a ray that lies in a grid: from and to which distance.
+/// Returns the part of a ray that lies in a grid, as an interval of distances.
 fn inside(
     grid: &Grid,
     origin: Point2<f64>,
@@ -181,7 +183,7 @@ fn inside(
             (from, to) = (from.max(a.min(b)), to.min(a.max(b)));
         }
     }
-    // A hair inside, so that rounding does not lead out of the grid.
+    // The hair keeps rounding from leading out of the grid.
     let hair = if from > 0.0 { 1e-9 } else { 0.0 };
     (from + hair < to).then_some((from + hair, to))
 }

@@ -1,4 +1,4 @@
-//! The last touches: corners are closed, and no wall is thicker than what was seen behind it.
+//! The last steps: corners are closed, and no wall is thicker than the views behind it allow.
 
 use super::SurveyParameters;
 use super::line::Line;
@@ -6,20 +6,20 @@ use super::view::View;
 use super::wall::{Wall, passed, pieces};
 use rayon::prelude::*;
 
-/// The number of steps in which the thickness is found.
+/// The number of steps in the search for the thickness.
 const STEPS: u32 = 5;
-/// No wall is thinner [m].
+/// The least thickness of a wall [m].
 const THINNEST: f64 = 0.02;
 /// Walls meet in a corner if they turn by more than this (the sine).
 const TURN: f64 = 0.3;
-/// Beams that went through behind a wall ended at least this far beyond [m].
+/// A beam that went through behind a wall ended at least this far beyond [m].
 const CLEAR: f64 = 0.05;
-/// Walls look in opposite directions from this cosine on.
+/// Walls face opposite directions from this cosine on.
 const OPPOSITE: f64 = -0.9;
-/// A share of a wall's pieces, behind which beams went through, from which it is thinner.
+/// If beams went through behind this share of a wall's pieces, the wall is thinner.
 const SHARE: f64 = 0.1;
 
-/// Moves ends of walls that nearly meet to where they meet.
+/// Moves the ends of walls that nearly meet to the point where the walls meet.
 pub(super) fn close_corners(walls: &mut [Wall], parameters: &SurveyParameters) {
     let snapshot = walls.to_vec();
     for (i, wall) in walls.iter_mut().enumerate() {
@@ -47,8 +47,10 @@ pub(super) fn close_corners(walls: &mut [Wall], parameters: &SurveyParameters) {
     }
 }
 
-/// How far the solid reaches behind each wall: what is assumed, or as far as the wall's other
-/// side or the free space behind it allows.
+/// Returns the depth of the solid behind each wall.
+///
+/// The depth is the assumed one, or less where the wall's other side or the free space behind it
+/// requires.
 pub(super) fn thicknesses(
     views: &[View],
     walls: &[Wall],
@@ -62,7 +64,7 @@ pub(super) fn thicknesses(
     walls.par_iter().map(thickness).collect()
 }
 
-/// How far behind a wall another one is that is seen from the other side.
+/// Returns the depth behind a wall of another wall that is seen from the other side.
 fn depth_of(wall: &Wall, other: &Wall) -> Option<f64> {
     let (from, to) = wall.line.span([wall.ends.0, wall.ends.1]);
     let (low, high) = wall.line.span([other.ends.0, other.ends.1]);
@@ -77,10 +79,10 @@ fn depth_of(wall: &Wall, other: &Wall) -> Option<f64> {
     (depth > 0.0).then_some(depth)
 }
 
-/// The depth behind a wall up to which no beams went through.
+/// Returns the depth behind a wall up to which no beams went through.
 fn free_depth(views: &[View], wall: &Wall, thickness: f64) -> f64 {
     let (from, to) = wall.line.span([wall.ends.0, wall.ends.1]);
-    // The ends may be off by a little.
+    // The ends may be slightly off.
     let (start, length) = (from + CLEAR, to - from - 2.0 * CLEAR);
     if length <= 0.0 {
         return thickness;

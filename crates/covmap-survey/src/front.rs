@@ -10,9 +10,9 @@ use std::ops::Range;
 
 /// The largest number of fronts: far more than any building has.
 pub(super) const MAX_FRONTS: usize = 20_000;
-/// The side of the squares by which fronts are found [m].
+/// The side of the squares that index the fronts [m].
 const SQUARE: f64 = 1.0;
-/// How often fronts are merged with each other.
+/// The largest number of rounds in which fronts are merged with each other.
 const ROUNDS: usize = 6;
 
 /// Segments on one line, seen from its left.
@@ -20,9 +20,9 @@ const ROUNDS: usize = 6;
 pub(super) struct Front {
     pub(super) moments: Moments,
     pub(super) line: Line,
-    /// From where to where on the line.
+    /// Start and end on the line.
     pub(super) ends: (Point2<f64>, Point2<f64>),
-    /// The echoes: which view, and which of its echoes.
+    /// The echoes: the index of a view, and the range of its echoes.
     pub(super) echoes: Vec<(usize, Range<usize>)>,
 }
 
@@ -38,8 +38,9 @@ impl Front {
         (self.ends.1 - self.ends.0).norm()
     }
 
-    /// How far apart two fronts are, if they may be one wall: the largest distance of an end
-    /// of the shorter from the line of the longer.
+    /// Returns the distance between two fronts, if they may be one wall.
+    ///
+    /// The distance is the largest of an end of the shorter from the line of the longer.
     fn distance(&self, other: &Self, parameters: &SurveyParameters) -> Option<f64> {
         if self.line.along.dot(&other.line.along) < libm::cos(parameters.merge_angle) {
             return None;
@@ -67,8 +68,8 @@ impl Front {
     }
 }
 
-/// Merges the segments of all views to fronts, in the order of the views; then the fronts with
-/// each other.
+/// Merges the segments of all views to fronts, in the order of the views; then merges the fronts
+/// with each other.
 pub(super) fn fronts(
     views: &[View],
     segments: &[Vec<Segment>],
@@ -95,7 +96,7 @@ pub(super) fn fronts(
     Ok(merged.fronts)
 }
 
-/// Fronts, and the squares through which they run.
+/// Fronts, and the squares that they cross.
 #[derive(Default)]
 struct Merged {
     fronts: Vec<Front>,
@@ -141,7 +142,7 @@ impl Merged {
     }
 }
 
-/// The squares along a segment, and a margin of squares around them.
+/// Returns the squares along a segment, and a margin of squares around them.
 fn squares((from, to): (Point2<f64>, Point2<f64>), around: i64) -> Vec<(i64, i64)> {
     let steps = ((to - from).norm() / (0.5 * SQUARE)).ceil().clamp(1.0, 1e4);
     #[allow(clippy::cast_possible_truncation, reason = "clamped")]

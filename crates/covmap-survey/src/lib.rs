@@ -1,22 +1,23 @@
 //! The survey of a building: its walls, from posed laser scans.
 //!
-//! The truth about a place where only a robot has been. [`survey`] finds the fronts of walls,
-//! and posts, in the scans of a laser (a ring of beams without width); the result, a
-//! [`Survey`], is a list of primitives that can be looked at and corrected by hand.
-//! [`Survey::coverage`] is its exact coverage, [`Survey::seen`] says where that is known.
+//! A survey is the truth about a place that only a robot has seen. [`survey`] finds the fronts of
+//! walls, and posts, in the scans of a laser (a ring of beams without width). The result, a
+//! [`Survey`], is a list of primitives that a user can look at and correct by hand.
+//! [`Survey::coverage`] gives its exact coverage; [`Survey::seen`] says where that coverage is
+//! known.
 //!
 //! # Algorithm
 //! 1. Scans between which the robot moved are views (`view`).
-//! 2. The echoes of each are split into straight segments, and merged (`split`).
-//! 3. Segments of all views that lie on one line, and are seen from the same side, are merged
-//!    to fronts. Lines are drawn by total least squares; the moments of the echoes are kept, so
-//!    that merging is exact (`front`).
-//! 4. A front is wall where it has echoes and few beams went through; gaps stay open. Of two
-//!    fronts that would hide each other, that with more echoes stays (`wall`).
-//! 5. Corners are closed, and walls are no thicker than what was seen behind them (`finish`).
+//! 2. The echoes of each view are split into straight segments, and merged (`split`).
+//! 3. Segments of all views that lie on one line, and are seen from the same side, are merged to
+//!    fronts. Lines are drawn by total least squares; merging is exact, because the moments of the
+//!    echoes are kept (`front`).
+//! 4. A front is wall where it has echoes and few beams went through; gaps stay open. Of two fronts
+//!    that would hide each other, the one with more echoes stays (`wall`).
+//! 5. Corners are closed, and walls are no thicker than the views behind them allow (`finish`).
 //! 6. Small groups of echoes that no wall explains, seen from many views, are posts (`post`).
 //!
-//! Everything is done in the order of scans and beams: equal scans give an equal survey.
+//! The algorithm works in the order of scans and beams: equal scans give an equal survey.
 
 mod evidence;
 mod finish;
@@ -48,9 +49,9 @@ use wall::Wall;
 pub struct Survey {
     /// Straight walls.
     pub walls: Vec<WallSegment>,
-    /// Small round things.
+    /// Small round objects.
     pub posts: Vec<Post>,
-    /// Anything else. The laser finds none of these: they are for corrections.
+    /// Other solids. The laser finds none of these; they are for corrections.
     pub solids: Vec<Shape>,
 }
 
@@ -58,18 +59,18 @@ pub struct Survey {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct WallSegment {
-    /// One end of its front \[m\].
+    /// One end of the front \[m\].
     pub from: (f64, f64),
-    /// The other end \[m\].
+    /// The other end of the front \[m\].
     pub to: (f64, f64),
-    /// From where its front was seen, looking from `from` to `to`.
+    /// The side from which the front was seen, looking from `from` to `to`.
     pub seen_from: Side,
-    /// How far the solid reaches behind the front \[m\]: assumed, unless something was seen
-    /// behind it.
+    /// Depth of the solid behind the front \[m\]: assumed, unless the laser saw something behind
+    /// it.
     pub thickness: f64,
 }
 
-/// A side of something with a direction.
+/// A side of a directed line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
     /// The left.
@@ -78,35 +79,35 @@ pub enum Side {
     Right,
 }
 
-/// A small round thing: a post, or the leg of a chair.
+/// A small round object: a post, or the leg of a chair.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Post {
-    /// Its centre \[m\].
+    /// Centre \[m\].
     pub center: (f64, f64),
-    /// Its radius \[m\].
+    /// Radius \[m\].
     pub radius: f64,
 }
 
-/// What speaks for a wall of a survey.
+/// The support for a wall of a survey.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Support {
-    /// From how many places it was seen.
+    /// The number of views from which the wall was seen.
     pub views: usize,
-    /// How many echoes it has.
+    /// The number of the wall's echoes.
     pub echoes: usize,
-    /// The root of their mean squared distance from the front \[m\].
+    /// Root mean square of the echoes' distances from the front \[m\].
     pub residual: f64,
 }
 
-/// A survey, and what speaks for it.
+/// A survey, and the support for its walls.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surveyed {
-    /// What was found.
+    /// The survey.
     pub survey: Survey,
-    /// The support of each of its walls.
+    /// The support of each wall.
     pub support: Vec<Support>,
-    /// How many scans were used.
+    /// The number of scans used.
     pub views: usize,
 }
 
@@ -125,16 +126,16 @@ pub enum SurveyError {
         front::MAX_FRONTS
     )]
     TooManyFronts,
-    /// What was found is no world.
+    /// The surveyed solids do not make a world.
     #[error(transparent)]
     World(#[from] WorldError),
 }
 
-/// The walls and posts that the posed scans of a laser show: each scan with its ring, whose
-/// beams are in order of their direction.
+/// Finds the walls and posts that the posed scans of a laser show.
 ///
-/// Scans whose pose is not finite are passed over. Without echoes the survey is empty. Work is
-/// linear in the echoes for each surface; their number is bounded.
+/// Each scan comes with its ring, whose beams are in order of their direction. Scans whose pose is
+/// not finite are passed over. Without echoes the survey is empty. The work is linear in the echoes
+/// for each surface; the number of surfaces is bounded.
 ///
 /// # Errors
 /// If a parameter is impossible, or there are too many echoes or surfaces.
@@ -160,9 +161,9 @@ pub fn survey<'a>(
     Ok(Surveyed { support: walls.iter().map(support).collect(), survey, views: views.len() })
 }
 
-/// A point to a tenth of a millimetre, so that files can be read.
+/// Rounds a point to a tenth of a millimetre, which keeps files readable.
 fn rounded(point: Point2<f64>) -> (f64, f64) {
-    // What rounds to −0 is 0.
+    // The sum turns −0 into 0.
     let round = |v: f64| (v * 1e4).round() / 1e4 + 0.0;
     (round(point.x), round(point.y))
 }

@@ -2,8 +2,10 @@
 
 use nalgebra::{Point2, Vector2};
 
-/// The number, mean and scatter of points: all that a line through them needs. The sum of two
-/// is exact, so that the line through the points of many scans is the one of all their points.
+/// The number, mean and scatter of points: all that a line through the points needs.
+///
+/// The sum of two is exact: the line through the points of many scans is the line of all their
+/// points.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Moments {
     pub(super) count: f64,
@@ -19,7 +21,7 @@ impl Moments {
         points.into_iter().fold(none, |all, p| all.with(&Self { count: 1.0, mean: p, ..none }))
     }
 
-    /// The moments of the points of both.
+    /// Returns the moments of the points of both.
     pub(super) fn with(&self, other: &Self) -> Self {
         let count = self.count + other.count;
         if count <= 0.0 {
@@ -36,13 +38,15 @@ impl Moments {
         }
     }
 
-    /// The line with the least sum of squared distances; its direction is
+    /// Returns the line with the least sum of squared distances.
+    ///
+    /// The line's direction is
     ///
     /// ```text
     /// ½ · atan2(2·S_xy, S_xx − S_yy)
     /// ```
     ///
-    /// `None` without two different points.
+    /// The result is `None` without two different points.
     pub(super) fn line(&self) -> Option<Line> {
         let (difference, cross) = (self.xx - self.yy, 2.0 * self.xy);
         let positive = self.xx + self.yy > 0.0;
@@ -50,7 +54,7 @@ impl Moments {
         positive.then_some(Line { at: self.mean, along: Vector2::new(cos, sin) })
     }
 
-    /// The root of the mean squared distance from the line [m].
+    /// Returns the root of the mean squared distance from the line [m].
     pub(super) fn residual(&self) -> f64 {
         let (difference, cross) = (self.xx - self.yy, 2.0 * self.xy);
         let spread = (difference * difference + cross * cross).sqrt();
@@ -58,7 +62,7 @@ impl Moments {
     }
 }
 
-/// A line with a direction. Who saw it stood on its left.
+/// A line with a direction; the viewer stands on its left.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
     pub(super) at: Point2<f64>,
@@ -67,37 +71,37 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// The line from one point to another, if they differ.
+    /// Returns the line from one point to another, if they differ.
     pub(super) fn through(from: Point2<f64>, to: Point2<f64>) -> Option<Self> {
         (to - from).try_normalize(1e-9).map(|along| Self { at: from, along })
     }
 
-    /// The same line, in the direction that has a point on its left.
+    /// Returns the same line, in the direction that has a point on its left.
     pub(super) fn seen_from(self, eye: Point2<f64>) -> Self {
         if self.height(eye) < 0.0 { Self { along: -self.along, ..self } } else { self }
     }
 
-    /// The signed distance of a point, positive on the left [m].
+    /// Returns the signed distance of a point, positive on the left [m].
     pub(super) fn height(&self, point: Point2<f64>) -> f64 {
         self.along.perp(&(point - self.at))
     }
 
-    /// The unit vector to the right: away from who saw it.
+    /// Returns the unit vector to the right: away from the viewer.
     pub(super) fn back(&self) -> Vector2<f64> {
         Vector2::new(self.along.y, -self.along.x)
     }
 
-    /// The place of a point along the line [m].
+    /// Returns the place of a point along the line [m].
     pub(super) fn place(&self, point: Point2<f64>) -> f64 {
         self.along.dot(&(point - self.at))
     }
 
-    /// The point at a place.
+    /// Returns the point at a place.
     pub(super) fn point(&self, place: f64) -> Point2<f64> {
         self.at + self.along * place
     }
 
-    /// From the smallest to the largest place of some points.
+    /// Returns the smallest and the largest place of some points.
     pub(super) fn span(&self, points: impl IntoIterator<Item = Point2<f64>>) -> (f64, f64) {
         points
             .into_iter()

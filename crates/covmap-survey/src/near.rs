@@ -1,4 +1,4 @@
-//! Which primitive explains an echo.
+//! The primitives that explain an echo.
 
 use super::Survey;
 use super::line::Line;
@@ -6,7 +6,7 @@ use covmap_world::WorldError;
 use covmap_world::geometry::{Bounds, Face, Index, Outline};
 use nalgebra::{Point2, Vector2};
 
-/// What an echo can come from.
+/// A possible source of an echo.
 enum Source {
     /// A front, its length and the thickness behind it.
     Front(Line, f64, f64),
@@ -14,7 +14,7 @@ enum Source {
     Solid(Outline),
 }
 
-/// The primitives of a survey, to be found by where they are.
+/// A spatial index of the primitives of a survey.
 pub(super) struct Near {
     sources: Vec<Source>,
     index: Index,
@@ -24,7 +24,7 @@ impl Near {
     /// # Errors
     /// If a primitive has an impossible number.
     pub(super) fn new(survey: &Survey) -> Result<Self, WorldError> {
-        // This checks all numbers, and gives the outlines of what has no front.
+        // This checks all numbers, and gives the outlines of the primitives without a front.
         let mut solids = survey.outlines()?.split_off(survey.walls.len());
         solids.truncate(survey.posts.len() + survey.solids.len());
         let front = |wall: &super::WallSegment| {
@@ -38,13 +38,13 @@ impl Near {
         Ok(Self { sources, index: Index::new(origin, &boxes) })
     }
 
-    /// Whether a primitive is not farther than this from a point.
+    /// Returns whether a primitive lies within a distance of a point.
     pub(super) fn explains(&self, point: Point2<f64>, distance: f64) -> bool {
         self.around(point, distance).any(|source| source.is_near(point, distance))
     }
 
-    /// The front nearest to a point, with its length and the thickness behind it,
-    /// if there is one this near.
+    /// Returns the front nearest to a point within a distance, with its length and the thickness
+    /// behind it.
     pub(super) fn front(&self, point: Point2<f64>, distance: f64) -> Option<(Line, f64, f64)> {
         let mut best = None;
         let mut smallest = f64::INFINITY;

@@ -1,61 +1,61 @@
-//! What a survey takes for a wall.
+//! The parameters of a survey.
 
 use super::SurveyError;
 use serde::{Deserialize, Serialize};
 
-/// What a survey takes for a wall, and what for noise.
+/// The parameters that tell walls from noise.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SurveyParameters {
-    /// A scan is used if the robot moved by this much since the last one that was \[m\] …
+    /// A scan is used if the robot moved by this much since the last used scan \[m\] …
     pub min_move: f64,
-    /// … or turned by this much \[rad\]. Standing still is no further view.
+    /// … or turned by this much \[rad\]. A robot that stands still gives no further view.
     pub min_turn: f64,
-    /// Echoes from farther away are not used \[m\].
+    /// Largest range of an echo that is used \[m\].
     pub max_range: f64,
-    /// Neighbouring echoes on one surface are at most this far apart \[m\], and farther only
-    /// as the spacing of the beams on a surface at `grazing` explains.
+    /// Largest distance between neighbouring echoes on one surface \[m\]. The distance may be
+    /// larger if the spacing of the beams on a surface at `grazing` explains it.
     pub jump: f64,
-    /// A surface that the beams meet at a smaller angle is not a surface, but echoes that mix
-    /// what is near and what is behind it \[rad\].
+    /// Smallest angle at which beams meet a surface \[rad\]. Flatter rows of echoes mix the near
+    /// and the far object, and are not a surface.
     pub grazing: f64,
-    /// Echoes of a scan that are on one wall are at most this far from its line \[m\].
+    /// Largest distance of a scan's echoes on one wall from the wall's line \[m\].
     pub split_distance: f64,
-    /// The fewest echoes of a segment in a scan …
+    /// The smallest number of echoes of a segment in a scan …
     pub min_echoes: usize,
     /// … and its least length \[m\].
     pub min_length: f64,
-    /// Segments of one wall differ at most by this angle \[rad\] …
+    /// Segments of one wall differ by at most this angle \[rad\] …
     pub merge_angle: f64,
     /// … this distance across \[m\]: the error of the poses …
     pub merge_distance: f64,
-    /// … and this gap along it \[m\]. A wall is also closed over such a gap where no beam went
+    /// … and this gap along it \[m\]. A wall is also closed over such a gap if no beam went
     /// through.
     pub merge_gap: f64,
-    /// The fewest views from which a wall, or a post, is seen.
+    /// The smallest number of views from which a wall, or a post, must be seen.
     pub min_views: usize,
-    /// A wall or post is not there if more than this share of the beams that could meet it
-    /// went through.
+    /// A wall or post is rejected if more than this share of the beams that could meet it went
+    /// through.
     pub max_passed: f64,
-    /// Ends of walls that are this near to where the walls meet are moved there \[m\].
+    /// An end of a wall this near to the point where two walls meet is moved there \[m\].
     pub corner: f64,
-    /// How far the solid is assumed to reach behind a front \[m\].
+    /// Assumed depth of the solid behind a front \[m\].
     pub thickness: f64,
     /// The largest radius of a post \[m\].
     pub max_post_radius: f64,
-    /// An echo this near to a wall or post is explained by it \[m\].
+    /// A wall or post explains an echo this near to it \[m\].
     pub explained: f64,
-    /// A cell is not scored if more than this share of the beams that came there ended in
-    /// echoes that nothing explains.
+    /// A cell is not scored if more than this share of the beams that reached it ended in
+    /// unexplained echoes.
     pub max_unexplained: f64,
-    /// A beam without an echo shows at most so much free space \[m\]: 0 if that may also be a
-    /// surface that does not answer.
+    /// Free space that a beam without an echo shows, at most \[m\]; 0 if a surface may also fail to
+    /// answer.
     pub free_without_echo: f64,
 }
 
 impl SurveyParameters {
-    /// For an indoor laser of 1 cm noise and 0.5° between beams, and poses that are good to
-    /// some centimetres.
+    /// Returns the parameters for an indoor laser of 1 cm noise and 0.5° between beams, and for
+    /// poses good to some centimetres.
     pub fn indoor() -> Self {
         Self {
             min_move: 0.05,
@@ -102,7 +102,7 @@ impl SurveyParameters {
             ("max_unexplained", self.max_unexplained),
             ("free_without_echo", self.free_without_echo),
         ];
-        // What is not a number compares as false.
+        // NaN compares as false.
         let good = |value: f64, lowest: f64| (lowest..=1000.0).contains(&value);
         let bad = positive.iter().find(|(_, value)| !good(*value, 1e-3));
         match bad.or_else(|| others.iter().find(|(_, value)| !good(*value, 0.0))) {

@@ -1,4 +1,4 @@
-//! Posts: what is seen from many views and is no wall.
+//! Posts: objects that many views see and that are not walls.
 
 use super::SurveyParameters;
 use super::near::Near;
@@ -9,18 +9,20 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// The side of the squares in which echoes are counted [m].
 const SQUARE: f64 = 0.04;
-/// No post is thinner [m].
+/// The least radius of a post [m].
 const THINNEST: f64 = 0.015;
-/// A beam passes through a post if it ends this far behind it [m].
+/// A beam passes through a post if it ends this far behind the post [m].
 const CLEAR: f64 = 0.1;
-/// Something is free-standing if beams went by this near on both sides of it [m].
+/// An object is free-standing if beams went by this near on both sides of it [m].
 const BESIDE: f64 = 0.15;
 
 type Square = (i64, i64);
 
-/// The posts among the echoes that no wall explains: groups of squares, each seen from enough
-/// views, that are small, that more beams meet than pass, and that beams pass on both sides.
-/// The last tells them from the far end of a wall, where its echoes are sparse.
+/// Returns the posts among the echoes that no wall explains.
+///
+/// A post is a small group of squares. Each square is seen from enough views, at most the share
+/// `max_passed` of the beams passes through the post, and beams pass on both sides. The last
+/// condition tells a post from the far end of a wall, where the wall's echoes are sparse.
 pub(super) fn posts(views: &[View], walls: &Near, parameters: &SurveyParameters) -> Vec<Post> {
     let mut squares: BTreeMap<Square, Vec<(usize, Point2<f64>)>> = BTreeMap::new();
     for (number, view) in views.iter().enumerate() {
@@ -64,7 +66,7 @@ fn views_of(echoes: &[(usize, Point2<f64>)]) -> usize {
     views.len()
 }
 
-/// A post round the mean of its echoes, as wide as they scatter.
+/// Returns a post around the mean of its echoes, with their scatter as its radius.
 fn post(
     echoes: &[(usize, Point2<f64>)],
     views: &[View],
@@ -83,7 +85,7 @@ fn post(
     for echo in views.iter().flatten() {
         let (sight, to_center) = (echo.at - echo.eye, center - echo.eye);
         let range = sight.norm();
-        // How far to the left of the centre the beam went by.
+        // The distance by which the beam passed to the left of the centre.
         let aside = -sight.perp(&to_center) / range;
         let beyond = sight.dot(&to_center) > 0.0 && range > to_center.norm() + radius + CLEAR;
         match aside {

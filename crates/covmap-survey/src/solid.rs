@@ -1,4 +1,4 @@
-//! The solids that a survey stands for, and their exact coverage.
+//! The solids of a survey, and their exact coverage.
 
 use super::line::Line;
 use super::{Post, Side, Survey, WallSegment};
@@ -11,20 +11,20 @@ use nalgebra::{Point2, Vector2};
 
 /// Ends of walls that are this near to each other are one corner [m].
 const SAME: f64 = 0.005;
-/// Walls that turn by less leave no gap behind their corner (the sine).
+/// Walls that turn by less than this leave no gap behind their corner (the sine).
 const STRAIGHT: f64 = 0.1;
-/// The most thicknesses that the back of a corner lies behind its front [1].
+/// The largest distance of the back of a corner from its front, in thicknesses [1].
 const FAR: f64 = 3.0;
 
 impl WallSegment {
-    /// The line of the front, seen from its left, and its length; `None` without length.
+    /// Returns the line of the front, seen from its left, and its length; `None` without length.
     pub(super) fn front(&self) -> Option<(Line, f64)> {
         let [from, to] = [self.from, self.to].map(|(x, y)| Point2::new(x, y));
         let (from, to) = if self.seen_from == Side::Left { (from, to) } else { (to, from) };
         Some((Line::through(from, to)?, (to - from).norm()))
     }
 
-    /// The solid behind the front.
+    /// Returns the solid behind the front.
     fn shape(&self) -> Shape {
         let thickness = self.thickness;
         let Some((line, length)) = self.front() else {
@@ -37,8 +37,8 @@ impl WallSegment {
 }
 
 impl Survey {
-    /// The outlines of walls, posts and the others, in this order; then what is solid behind
-    /// the corners of rooms, between the walls that meet there.
+    /// Returns the outlines of walls, posts and other solids, in this order; then those of the
+    /// solids behind the corners of rooms, between the walls that meet there.
     pub(super) fn outlines(&self) -> Result<Vec<Outline>, WorldError> {
         let mut all = outlines(&obstacles(self.shapes()))?;
         all.extend(outlines(&obstacles(corners(&self.walls).into_iter()))?);
@@ -52,8 +52,10 @@ impl Survey {
         walls.chain(posts).chain(self.solids.iter().cloned())
     }
 
-    /// The world of the surveyed solids, with rough surfaces, and so much free space around
-    /// them \[m\]; and where its lower left corner lies in the survey.
+    /// Returns the world of the surveyed solids, and the place of its lower left corner in the
+    /// survey.
+    ///
+    /// The solids have rough surfaces, and free space of width `margin` \[m\] around them.
     ///
     /// # Errors
     /// As [`Survey::coverage`].
@@ -68,15 +70,15 @@ impl Survey {
         Ok((Scenario { name: name.to_owned(), extent, start: None, obstacles }, corner))
     }
 
-    /// The exact coverage of every cell of a grid: the share of its area that lies in a solid,
-    /// each place once.
+    /// Returns the exact coverage of every cell of a grid: the share of its area that lies in a
+    /// solid.
     ///
-    /// Solid is what lies behind a front, up to its thickness; where two walls meet in the
-    /// corner of a room, what lies between; and posts and other solids.
+    /// Each place counts once. Solid are the space behind a front, up to its thickness; the space
+    /// between two walls that meet in the corner of a room; and posts and other solids.
     ///
     /// # Errors
-    /// If a primitive has a number that is not finite, absurd or not positive, or a polygon is
-    /// not simple. Walls are counted first, then posts, then the other solids.
+    /// If a primitive has a number that is not finite, absurd or not positive, or a polygon is not
+    /// simple. The error counts walls first, then posts, then the other solids.
     pub fn coverage(&self, grid: &Grid) -> Result<Raster<f64>, WorldError> {
         let outlines = self.outlines()?;
         let all = Vector2::repeat(f64::INFINITY);
@@ -84,7 +86,7 @@ impl Survey {
         Ok(Solids { outlines: &outlines, bounds, disjoint: false }.coverage(grid))
     }
 
-    /// The corners of the smallest box around all solids \[m\]; `None` without solids.
+    /// Returns the corners of the smallest box around all solids \[m\]; `None` without solids.
     ///
     /// # Errors
     /// As [`Survey::coverage`].
@@ -100,8 +102,8 @@ fn obstacles(shapes: impl Iterator<Item = Shape>) -> Vec<Obstacle> {
     shapes.map(|shape| Obstacle { shape, surface: Surface::Rough }).collect()
 }
 
-/// What lies behind the corners where one wall ends, the next begins, and the room between
-/// them is less than half a turn wide.
+/// Returns the solids behind the corners where one wall ends, the next begins, and the room between
+/// the walls is less than half a turn wide.
 fn corners(walls: &[WallSegment]) -> Vec<Shape> {
     let fronts: Vec<(Line, f64, f64)> = walls
         .iter()
@@ -129,7 +131,7 @@ fn corner(at: Point2<f64>, before: (&Line, f64), after: (&Line, f64)) -> Option<
     if sine < STRAIGHT {
         return None;
     }
-    // Where the backs of both walls meet: a · v and b · v are the thicknesses.
+    // The point where the backs of both walls meet: a · v and b · v are the thicknesses.
     let v = Vector2::new(before.1 * b.y - after.1 * a.y, after.1 * a.x - before.1 * b.x) / sine;
     let mut points = vec![at, at + a * before.1, at + v, at + b * after.1];
     if v.norm() > FAR * before.1.max(after.1) || v.perp(&a) > 0.0 || b.perp(&v) > 0.0 {

@@ -6,24 +6,25 @@ use super::view::{Echo, View};
 use nalgebra::Point2;
 use std::ops::Range;
 
-/// The most beams in a row without an echo on one surface.
+/// The largest number of beams in a row without an echo on one surface.
 const MISSING: usize = 3;
 
 /// A straight piece of surface in one scan.
 #[derive(Debug, Clone)]
 pub(super) struct Segment {
     pub(super) moments: Moments,
-    /// Seen from its left.
+    /// The line, seen from its left.
     pub(super) line: Line,
     /// The echoes of the view that lie on it.
     pub(super) echoes: Range<usize>,
 }
 
-/// The segments of a view, in the order of its beams.
+/// Returns the segments of a view, in the order of its beams.
 ///
-/// Echoes in a row are a run as long as no two neighbours are farther apart than the beams
-/// explain. A run is split at the echo farthest from the line between its ends until all are
-/// near; neighbours whose common line by total least squares is near to all are merged again.
+/// Echoes in a row are a run if no two neighbours are farther apart than the beams explain. A run
+/// is split at the echo farthest from the line between its ends until all echoes are near.
+/// Neighbours are merged again if all their echoes are near their common line by total least
+/// squares.
 pub(super) fn segments(view: &View, parameters: &SurveyParameters) -> Vec<Segment> {
     let mut found = Vec::new();
     let mut start = 0;
@@ -38,8 +39,9 @@ pub(super) fn segments(view: &View, parameters: &SurveyParameters) -> Vec<Segmen
     found
 }
 
-/// Whether two neighbouring echoes lie on different surfaces. On one that the beams meet at
-/// the angle λ they are apart by
+/// Returns whether two neighbouring echoes lie on different surfaces.
+///
+/// The distance of two echoes on one surface that the beams meet at the angle λ is
 ///
 /// ```text
 /// r · sin Δ / sin(λ − Δ)
@@ -58,7 +60,7 @@ fn breaks(before: &Echo, after: &Echo, parameters: &SurveyParameters) -> bool {
     (after.at - before.at).norm() > parameters.jump.max(near * sin / slant)
 }
 
-/// The farthest of some echoes from a line.
+/// Returns the farthest of some echoes from a line.
 fn farthest(view: &View, echoes: Range<usize>, line: &Line) -> (usize, f64) {
     echoes
         .map(|i| (i, line.height(view[i].at).abs()))
@@ -67,7 +69,7 @@ fn farthest(view: &View, echoes: Range<usize>, line: &Line) -> (usize, f64) {
 
 fn split(view: &View, run: Range<usize>, distance: f64) -> Vec<Range<usize>> {
     let mut pieces = Vec::new();
-    // From right to left, so that pieces come out from left to right.
+    // The order from right to left yields pieces from left to right.
     let mut open = vec![run];
     while let Some(piece) = open.pop() {
         if piece.len() < 3 {
@@ -90,7 +92,7 @@ fn split(view: &View, run: Range<usize>, distance: f64) -> Vec<Range<usize>> {
     pieces
 }
 
-/// Merges neighbours as long as all their echoes are near to one line.
+/// Merges neighbours whose echoes are all near to one line.
 fn merge(view: &View, pieces: Vec<Range<usize>>, distance: f64) -> Vec<Range<usize>> {
     let mut merged: Vec<Range<usize>> = Vec::with_capacity(pieces.len());
     for piece in pieces {

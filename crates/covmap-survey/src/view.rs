@@ -4,7 +4,7 @@ use super::{SurveyError, SurveyParameters};
 use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2, Vector2};
 
-/// The farthest that a robot may be from the origin [m].
+/// The largest distance of a robot from the origin [m].
 const FARTHEST: f64 = 1e5;
 /// The largest number of echoes of a survey.
 pub(super) const MAX_ECHOES: usize = 20_000_000;
@@ -12,25 +12,25 @@ pub(super) const MAX_ECHOES: usize = 20_000_000;
 /// A beam that met something.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Echo {
-    /// Which beam of its ring.
+    /// The beam's index in its ring.
     pub(super) beam: usize,
-    /// Where the sensor was.
+    /// The place of the sensor.
     pub(super) eye: Point2<f64>,
-    /// Where the echo came from.
+    /// The source of the echo.
     pub(super) at: Point2<f64>,
 }
 
 /// The echoes of a scan, in the order of its beams.
 pub(super) type View = Vec<Echo>;
 
-/// Whether a pose is one.
+/// Returns whether a pose is valid.
 pub(super) fn is_pose(pose: &Isometry2<f64>) -> bool {
     let rotation = [pose.rotation.re, pose.rotation.im];
     pose.translation.vector.iter().all(|v| v.abs() <= FARTHEST)
         && rotation.iter().all(|v| v.is_finite())
 }
 
-/// Where a beam starts and where it points.
+/// Returns the origin and the direction of a beam.
 pub(super) fn axis(
     pose: &Isometry2<f64>,
     robot_from_sensor: &Isometry2<f64>,
@@ -39,7 +39,7 @@ pub(super) fn axis(
     (sensor.translation.vector.into(), sensor.rotation * Vector2::x())
 }
 
-/// The views of all scans that are used: those between which the robot moved.
+/// Returns the views of all scans that are used: those between which the robot moved.
 pub(super) fn views<'a>(
     scans: impl IntoIterator<Item = (&'a SonarRing, &'a Scan)>,
     parameters: &SurveyParameters,

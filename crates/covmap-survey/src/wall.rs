@@ -1,4 +1,4 @@
-//! Walls: the stretches of a front that are truly there.
+//! Walls: the stretches of a front that are truly solid.
 
 use super::SurveyParameters;
 use super::front::Front;
@@ -9,24 +9,24 @@ use rayon::prelude::*;
 
 /// The length of the pieces in which a front is judged [m].
 const PIECE: f64 = 0.05;
-/// A beam went through if it started this far in front and ended this far behind, or the
-/// other way round [m].
+/// A beam went through if it started this far in front and ended this far behind, or vice versa
+/// [m].
 const CLEAR: f64 = 0.1;
-/// The number of beams that went through from which a piece is open where there is no echo.
+/// A piece without enough echoes is open if this many beams went through.
 const OPEN: u32 = 2;
-/// The fewest echoes that make a piece of wall.
+/// The smallest number of echoes of a piece of wall.
 const HITS: u32 = 2;
-/// Fronts of one direction that are nearer than this many merge distances are one [1].
+/// Fronts of one direction are the same if they are nearer than this many merge distances [1].
 const HIDDEN: f64 = 2.0;
-/// The number of echoes of a wall that are asked whether they came through another one.
+/// The number of a wall's echoes that are checked for beams through another wall.
 const SAMPLE: usize = 200;
-/// Echoes farther than this many residuals from the line are not used for it [1].
+/// Echoes farther than this many residuals from the line are left out of it [1].
 const OUTLIER: f64 = 2.5;
 
-/// A wall, and what speaks for it.
+/// A wall, and the support for it.
 #[derive(Debug, Clone)]
 pub(super) struct Wall {
-    /// Seen from its left.
+    /// The line, seen from its left.
     pub(super) line: Line,
     pub(super) ends: (Point2<f64>, Point2<f64>),
     pub(super) views: usize,
@@ -39,7 +39,7 @@ impl Wall {
         (self.ends.1 - self.ends.0).norm()
     }
 
-    /// Whether a beam went through the wall, from its front to well behind it.
+    /// Returns whether a beam went through the wall, from its front to well behind it.
     fn is_crossed_by(&self, echo: &Echo) -> bool {
         let (before, behind) = (self.line.height(echo.eye), self.line.height(echo.at));
         if before < CLEAR || behind > -CLEAR {
@@ -50,7 +50,7 @@ impl Wall {
         (from + PIECE..=to - PIECE).contains(&self.line.place(at))
     }
 
-    /// Whether a point that is seen from the same side would be the same wall, or hidden by it.
+    /// Returns whether a point seen from the same side belongs to this wall, or is hidden by it.
     fn hides(&self, line: &Line, point: Point2<f64>, parameters: &SurveyParameters) -> bool {
         let (from, to) = self.line.span([self.ends.0, self.ends.1]);
         line.along.dot(&self.line.along) > libm::cos(2.0 * parameters.merge_angle)
@@ -59,9 +59,9 @@ impl Wall {
     }
 }
 
-/// How many beams went through each of `count` pieces of a line, from `start` on.
+/// Counts the beams that went through each of `count` pieces of a line, from `start` on.
 ///
-/// Work: echoes × pieces' lines; each pair is a few products.
+/// The work is one pass over all echoes, with a few products for each.
 pub(super) fn passed(
     views: &[View],
     line: &Line,
@@ -89,17 +89,17 @@ fn piece_at(place: f64, count: usize) -> Option<usize> {
     (place >= 0.0 && piece < count).then_some(piece)
 }
 
-/// The number of pieces of a length.
+/// Returns the number of pieces of a length.
 pub(super) fn pieces(length: f64) -> usize {
     #[allow(clippy::cast_possible_truncation, reason = "clamped")]
     let count = (length / PIECE).ceil().clamp(1.0, 1e6) as usize;
     count
 }
 
-/// What speaks for and against the pieces of a front.
+/// The evidence for and against the pieces of a front.
 struct Profile {
     start: f64,
-    /// Place and echo: view, number.
+    /// The place of each echo, with the indices of its view and its echo.
     echoes: Vec<(f64, usize, usize)>,
     hits: Vec<u32>,
     passed: Vec<u32>,
@@ -126,7 +126,7 @@ impl Profile {
         self.start + (piece as f64 + 0.5) * PIECE
     }
 
-    /// The stretches that are wall, by their first and last piece.
+    /// Returns the stretches that are wall, by their first and last piece.
     fn stretches(
         &self,
         is_taken: impl Fn(f64) -> bool,
@@ -151,8 +151,9 @@ impl Profile {
         stretches
     }
 
-    /// The wall over a stretch of pieces, with its line drawn anew through its own echoes; not
-    /// if most of its echoes came through other walls.
+    /// Returns the wall over a stretch of pieces, with its line drawn anew through its own echoes.
+    ///
+    /// There is no wall if most of the echoes came through other walls.
     fn wall(
         &self,
         (first, last): (usize, usize),
@@ -198,7 +199,8 @@ impl Profile {
     }
 }
 
-/// The walls of all fronts: the fronts with the most echoes first, and of what they hide nothing.
+/// Returns the walls of all fronts. Fronts with the most echoes come first; parts that they hide
+/// are dropped.
 pub(super) fn walls(
     views: &[View],
     mut fronts: Vec<Front>,

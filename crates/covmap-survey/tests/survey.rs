@@ -13,7 +13,7 @@ use proptest::prelude::*;
 use rand_pcg::rand_core::Rng;
 use std::f64::consts::PI;
 
-/// A laser of 361 beams over half a circle.
+/// Returns a laser of 361 beams over half a circle.
 fn laser() -> SonarRing {
     let beam = |i: i32| Beam {
         pose: Isometry2::new(Vector2::new(0.1, 0.0), PI * (f64::from(i) / 360.0 - 0.5)),
@@ -50,11 +50,11 @@ fn poses() -> Vec<Isometry2<f64>> {
     turns.flat_map(pose).collect()
 }
 
-/// Scans with ranges off by up to so much.
+/// Returns scans whose ranges have errors of standard deviation `noise`.
 fn scans(world: &World, ring: &SonarRing, poses: &[Isometry2<f64>], noise: f64) -> Vec<Scan> {
     let mut random = stream(7, "laser", 0);
     let mut off = || {
-        // The sum of some even ones is nearly normal; 1.0 is one standard deviation.
+        // A sum of uniform variates is nearly normal; 1.0 is one standard deviation.
         let sum: f64 = (0..12).map(|_| f64::from(random.next_u32()) / f64::from(u32::MAX)).sum();
         noise * (sum - 6.0)
     };
@@ -74,7 +74,7 @@ fn surveyed(ring: &SonarRing, scans: &[Scan]) -> Surveyed {
     survey(scans.iter().map(|scan| (ring, scan)), &SurveyParameters::indoor()).unwrap()
 }
 
-/// The distance of a point from the front of a wall.
+/// Returns the distance of a point from the front of a wall.
 fn distance(point: Point2<f64>, wall: &WallSegment) -> f64 {
     let (from, to) =
         (Point2::from([wall.from.0, wall.from.1]), Point2::from([wall.to.0, wall.to.1]));
@@ -83,7 +83,7 @@ fn distance(point: Point2<f64>, wall: &WallSegment) -> f64 {
     (point - (from + along * share)).norm()
 }
 
-/// Whether every point of a true wall is within 2 cm of a surveyed front, up to its ends.
+/// Checks that every point of a true wall is within 2 cm of a surveyed front, up to its ends.
 #[track_caller]
 fn check_wall(found: &Survey, from: [f64; 2], to: [f64; 2]) {
     let (from, to) = (Point2::from(from), Point2::from(to));
@@ -166,7 +166,7 @@ fn what_no_beam_reached_is_not_scored() {
     let at = |x, y| grid.cell_at(Point2::new(x, y)).unwrap();
     let seen = scored(&empty);
     assert!(seen.get(at(2.0, 1.2)).unwrap());
-    // Behind the robot, behind the box, and where an echo has no explanation.
+    // The cells lie behind the robot, behind the box, and at an echo without an explanation.
     for (x, y) in [(0.5, 1.0), (5.5, 3.1), (5.95, 1.0)] {
         let cell = at(x, y);
         let explained = *seen.get(cell).unwrap();
@@ -313,8 +313,9 @@ proptest! {
     }
 }
 
-/// A recorded log: frames of a laser in millimetres, with poses that were corrected by
-/// matching; `None` where it is not at hand.
+/// Returns a recorded log: frames of a laser in millimetres, with poses corrected by matching.
+///
+/// The result is `None` if the log is absent.
 fn recorded(name: &str) -> Option<(SonarRing, Vec<Scan>)> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data/sonar8");
     let read = |file: String| std::fs::read_to_string(format!("{folder}/{file}")).ok();

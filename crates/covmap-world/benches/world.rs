@@ -1,4 +1,5 @@
-//! Firing a ring beside ray casts of parry alone, and the exact coverage of an office.
+//! Benchmarks: a ring's firing beside the ray casts of parry alone, and the exact coverage of an
+//! office.
 #![allow(missing_docs, reason = "a benchmark")]
 
 use covmap::Grid;

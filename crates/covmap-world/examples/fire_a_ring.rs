@@ -1,4 +1,4 @@
-//! Fires the sonars of a B21r in a room with a pillar, and compares them with the truth.
+//! Fires the sonars of a B21r in a room with a pillar, and compares the ranges with the truth.
 #![allow(clippy::print_stdout, reason = "an example prints")]
 
 use covmap_sonar::{Range, SonarRing};

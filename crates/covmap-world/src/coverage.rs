@@ -1,8 +1,8 @@
 //! The exact coverage of every cell.
 //!
-//! Each outline is clipped to halves of its range of cells, and these again, until a range
-//! is full or a single cell. What is left of the outlines inside a cell is scaled to the
-//! unit square, where the area of the union is computed.
+//! The algorithm clips each outline to halves of its range of cells, and to halves of these,
+//! until a range is full or a single cell. The clipped pieces inside a cell are scaled to the
+//! unit square, where the area of their union is computed.
 
 use crate::faces::Bounds;
 use crate::outline::{Outline, twice_area};
@@ -15,35 +15,37 @@ use i_overlay::i_float::int::point::IntPoint;
 use nalgebra::{Point2, Vector2};
 use rayon::prelude::*;
 
-/// Rows of cells that are worked on together.
+/// The number of rows of cells that one task works on.
 const BAND: i32 = 8;
-/// A coverage this near to 0 or 1 is rounding, and becomes 0 or 1.
+/// A coverage this near to 0 or 1 is taken as rounding, and becomes 0 or 1.
 const ROUNDING: f64 = 1e-12;
-/// Units of the integer grid in a cell's side: areas are good to some 1e-12.
+/// Units of the integer grid in a cell's side. Areas are good to some 1e-12.
 const UNITS: f64 = 1_099_511_627_776.0;
 
 impl World {
-    /// The exact coverage of every cell of a grid: the share of its area that lies inside an
-    /// obstacle or outside of the extent, each place once. The error is below 1e-9.
+    /// Returns the exact coverage of every cell of a grid.
+    ///
+    /// The coverage is the share of the cell's area that lies inside an obstacle or outside of
+    /// the extent; each place counts once. The error is below 1e-9.
     pub fn coverage(&self, grid: &Grid) -> Raster<f64> {
         let (outlines, bounds, disjoint) = (&self.outlines, self.bounds(), self.disjoint);
         Solids { outlines, bounds, disjoint }.coverage(grid)
     }
 }
 
-/// What is solid: outlines, and everything outside of bounds, which may be infinite.
+/// The solids: outlines, and everything outside of the bounds, which may be infinite.
 #[derive(Debug)]
 pub struct Solids<'a> {
-    /// What is solid.
+    /// The outlines of the solids.
     pub outlines: &'a [Outline],
-    /// Outside of it all is solid.
+    /// The bounds, outside of which everything is solid.
     pub bounds: Bounds,
     /// Whether no two outlines overlap.
     pub disjoint: bool,
 }
 
 impl Solids<'_> {
-    /// The exact coverage of every cell of a grid.
+    /// Returns the exact coverage of every cell of a grid.
     pub fn coverage(&self, grid: &Grid) -> Raster<f64> {
         #[allow(clippy::cast_possible_truncation, reason = "a grid has at most 2e7 cells")]
         let (width, height) = (grid.width() as i32, grid.height() as i32);
@@ -69,7 +71,7 @@ impl Solids<'_> {
     }
 }
 
-/// Cells from the first column (row) to the one before the second.
+/// A range of cells, in each direction from the first index to the one before the second.
 #[derive(Clone, Copy)]
 struct Cells {
     x: (i32, i32),
@@ -80,7 +82,7 @@ struct Band<'a> {
     bounds: Bounds,
     grid: &'a Grid,
     cells: Cells,
-    /// How many full ranges begin (or, negative, end) here: summed along x and y it says
+    /// The number of full ranges that begin (or, negative, end) here. The sum along x and y tells
     /// whether a cell is full.
     full: Vec<i32>,
     /// Parts of outlines in cells, in cell-local coordinates.
@@ -93,13 +95,13 @@ impl<'a> Band<'a> {
         Self { bounds, grid, cells, full: vec![0; usize_of(count)], pieces: Vec::new() }
     }
 
-    /// The corners of a range of cells.
+    /// Returns the corners of a range of cells.
     fn range(&self, cells: Cells) -> (Point2<f64>, Point2<f64>) {
         let corner = |x, y| self.grid.lower_corner(Cell::new(x, y));
         (corner(cells.x.0, cells.y.0), corner(cells.x.1, cells.y.1))
     }
 
-    /// Adds what lies of an outline between two corners.
+    /// Adds the part of an outline that lies between two corners.
     fn add(&mut self, outline: &Outline, (low, high): (Point2<f64>, Point2<f64>)) {
         let first = self.grid.unbounded_cell_at(low).offset(-1, -1);
         let last = self.grid.unbounded_cell_at(high).offset(2, 2);
@@ -157,7 +159,8 @@ impl<'a> Band<'a> {
         }
     }
 
-    /// The place of a cell in `full`, which has one column and one row more than the band.
+    /// Returns the index of a cell in `full`, which has one column and one row more than the
+    /// band.
     fn place(&self, x: i32, y: i32) -> usize {
         let columns = self.cells.x.1 - self.cells.x.0 + 1;
         usize_of((y - self.cells.y.0) * columns + x - self.cells.x.0)
@@ -195,7 +198,7 @@ impl<'a> Band<'a> {
         values
     }
 
-    /// The share of a cell that lies outside of the extent.
+    /// Returns the share of a cell that lies outside of the extent.
     fn outside(&self, cell: Cell) -> f64 {
         let (low, high) = self.range(Cells { x: (cell.x, cell.x + 1), y: (cell.y, cell.y + 1) });
         let (from, to) = self.bounds;
@@ -208,15 +211,16 @@ impl<'a> Band<'a> {
     }
 }
 
-/// The part of a polygon on one side of an axis-parallel line (Sutherland–Hodgman). A part
-/// that falls apart stays connected along the line, without area.
+/// Returns the part of a polygon on one side of an axis-parallel line (Sutherland–Hodgman).
+///
+/// A part that falls apart stays connected along the line, without area.
 fn clipped(polygon: &[Point2<f64>], axis: usize, bound: f64, keep_below: bool) -> Vec<Point2<f64>> {
     let inside = |p: &Point2<f64>| if keep_below { p[axis] <= bound } else { p[axis] >= bound };
     let mut kept = Vec::with_capacity(polygon.len() + 4);
     let Some(mut before) = polygon.last() else { return kept };
     for point in polygon {
         if inside(before) != inside(point) {
-            // From the lower end, so that neighbours on both sides of a line agree.
+            // Computed from the lower end: neighbours on both sides of a line agree.
             let (p, q) = if before[axis] < point[axis] { (before, point) } else { (point, before) };
             let share = (bound - p[axis]) / (q[axis] - p[axis]);
             let mut crossing = p + (q - p) * share;
@@ -231,7 +235,7 @@ fn clipped(polygon: &[Point2<f64>], axis: usize, bound: f64, keep_below: bool) -
     kept
 }
 
-/// Whether a polygon that was clipped to a rectangle fills it: no side runs inside it.
+/// Returns whether a polygon that was clipped to a rectangle fills it: no side runs inside it.
 #[allow(clippy::float_cmp, reason = "clipping sets coordinates to exactly these")]
 fn fills(polygon: &[Point2<f64>], low: Point2<f64>, high: Point2<f64>) -> bool {
     let next = polygon.iter().cycle().skip(1);
@@ -250,12 +254,12 @@ fn sum(pieces: &[Piece]) -> f64 {
     pieces.iter().map(|(_, p)| 0.5 * twice_area(p)).sum()
 }
 
-/// The area of the union of pieces inside the unit square.
+/// Returns the area of the union of pieces inside the unit square.
 fn union(pieces: &[Piece]) -> f64 {
     if pieces.len() < 2 || are_apart(pieces) { sum(pieces) } else { overlapping(pieces) }
 }
 
-/// Whether the boxes of all pieces are apart.
+/// Returns whether the boxes of all pieces are apart.
 fn are_apart(pieces: &[Piece]) -> bool {
     const MANY: usize = 16;
     let bounds =
@@ -270,7 +274,7 @@ fn are_apart(pieces: &[Piece]) -> bool {
         })
 }
 
-/// The area of a union, on a fine grid of integers.
+/// Returns the area of a union, on a fine grid of integers.
 fn overlapping(pieces: &[Piece]) -> f64 {
     let points = pieces.iter().map(|(_, p)| p.len()).sum();
     let mut overlay = Overlay::<i64>::new(points);

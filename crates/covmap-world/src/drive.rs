@@ -5,16 +5,17 @@ use crate::world::World;
 use covmap_sonar::Drive;
 use nalgebra::{Point2, Vector2};
 
-/// A disc touches what is nearer than its radius by this [m].
+/// A disc touches a solid that is nearer than its radius by this [m].
 const CONTACT: f64 = 1e-9;
 /// Driving stops this far before contact [m].
 const HAIR: f64 = 1e-6;
 
 impl World {
-    /// Drives a disc straight from one point to another; it stops before it touches a solid.
+    /// Drives a disc straight from one point to another; the disc stops before it touches a
+    /// solid.
     ///
-    /// A disc that is in contact from the start may move away from what it touches, or along
-    /// it, but not nearer. A disc whose centre is in a solid goes nowhere.
+    /// A disc that is in contact from the start may move away from the solid, or along it, but
+    /// not nearer. A disc whose centre is in a solid does not move.
     pub fn drive(&self, from: Point2<f64>, to: Point2<f64>, radius: f64) -> Drive {
         let way = to - from;
         let length = way.norm();
@@ -39,8 +40,10 @@ impl World {
     }
 }
 
-/// How far a disc gets until it touches a face; the distance to a face is convex along a
-/// straight line, so what it leaves it never meets again.
+/// Returns the distance that a disc travels until it touches a face.
+///
+/// The distance to a face is convex along a straight line: a disc never meets a face again that
+/// it leaves.
 fn contact(face: &Face, from: Point2<f64>, direction: Vector2<f64>, radius: f64) -> Option<f64> {
     let away = from - face.nearest(from);
     if away.norm() <= radius {
@@ -52,7 +55,7 @@ fn contact(face: &Face, from: Point2<f64>, direction: Vector2<f64>, radius: f64)
     side.into_iter().chain(ends).flatten().min_by(f64::total_cmp)
 }
 
-/// To the line at a distance from the face, between its ends.
+/// Returns the distance to the line beside the face, between the face's ends.
 fn to_side(face: &Face, from: Point2<f64>, direction: Vector2<f64>, radius: f64) -> Option<f64> {
     let (height, climb) = (face.height(from), direction.dot(&face.normal()));
     let approach = -climb * height.signum();
@@ -64,7 +67,7 @@ fn to_side(face: &Face, from: Point2<f64>, direction: Vector2<f64>, radius: f64)
     (0.0..=face.length).contains(&along).then_some(distance)
 }
 
-/// To the circle around a point.
+/// Returns the distance to the circle around a point.
 fn to_disc(
     center: Point2<f64>,
     from: Point2<f64>,

@@ -1,4 +1,4 @@
-//! What is wrong with a world.
+//! Errors of worlds.
 
 use covmap::short;
 
@@ -6,7 +6,7 @@ use covmap::short;
 pub const MAX_EXTENT: f64 = 1e4;
 /// The largest heading of a start, either way \[rad\].
 pub(crate) const MAX_HEADING: f64 = 1e6;
-/// The shortest length of anything in it \[m\].
+/// The shortest length of anything in a world \[m\].
 pub const MIN_LENGTH: f64 = 1e-4;
 /// The largest number of obstacles.
 pub const MAX_OBSTACLES: usize = 100_000;
@@ -16,7 +16,7 @@ pub(crate) const MAX_POLYGON_POINTS: usize = 10_000;
 pub(crate) const MAX_POINTS: usize = 1_000_000;
 /// The largest number of pairs of a face and an outline that may bury it.
 pub(crate) const MAX_BURIALS: usize = 10_000_000;
-/// The largest number of pairs of neighbouring faces that are looked at for corners.
+/// The largest number of pairs of neighbouring faces that are searched for corners.
 pub(crate) const MAX_PAIRS: usize = 20_000_000;
 
 /// Why a world cannot be made.
@@ -50,9 +50,9 @@ pub enum WorldError {
         limit = 2.0 * MAX_EXTENT
     )]
     Number {
-        /// Which one.
+        /// The obstacle.
         obstacle: usize,
-        /// Its shape.
+        /// The obstacle's shape.
         kind: &'static str,
         /// The number.
         value: f64,
@@ -63,11 +63,11 @@ pub enum WorldError {
         short(value)
     )]
     Length {
-        /// Which one.
+        /// The obstacle.
         obstacle: usize,
-        /// Its shape.
+        /// The obstacle's shape.
         kind: &'static str,
-        /// Which length.
+        /// The name of the length.
         what: &'static str,
         /// The length \[m\].
         value: f64,
@@ -75,9 +75,9 @@ pub enum WorldError {
     /// A polygon has too few points that differ.
     #[error("obstacle {obstacle} (Polygon): {points} different points; a polygon needs at least 3")]
     TooFewPoints {
-        /// Which one.
+        /// The obstacle.
         obstacle: usize,
-        /// How many different points in a row it has.
+        /// The number of points that differ from the point before.
         points: usize,
     },
     /// A polygon has too many points.
@@ -85,9 +85,9 @@ pub enum WorldError {
         "obstacle {obstacle} (Polygon): {points} points are more than {MAX_POLYGON_POINTS}; simplify it"
     )]
     TooManyPolygonPoints {
-        /// Which one.
+        /// The obstacle.
         obstacle: usize,
-        /// How many it has.
+        /// The number of points.
         points: usize,
     },
     /// A polygon crosses or touches itself.
@@ -95,35 +95,35 @@ pub enum WorldError {
         "obstacle {obstacle} (Polygon): the sides from points {first} and {second} cross or touch near ({x:.3}, {y:.3}); split it into simple polygons"
     )]
     SelfCrossing {
-        /// Which one.
+        /// The obstacle.
         obstacle: usize,
-        /// The point, counted from 0, where one side starts.
+        /// The point, counted from 0, at which one side starts.
         first: usize,
-        /// The point where the other side starts.
+        /// The point at which the other side starts.
         second: usize,
-        /// Near where \[m\].
+        /// Approximate x of the contact \[m\].
         x: f64,
-        /// Near where \[m\].
+        /// Approximate y of the contact \[m\].
         y: f64,
     },
     /// A polygon encloses nothing.
     #[error("obstacle {obstacle} (Polygon): its points lie on a line and enclose no area")]
     Flat {
-        /// Which one.
+        /// The obstacle.
         obstacle: usize,
     },
     /// A polygon encloses next to nothing.
     #[error("obstacle {obstacle} (Polygon): its area of {} m² is too small", short(area))]
     TooSmall {
-        /// Which one.
+        /// The obstacle.
         obstacle: usize,
-        /// Its area \[m²\].
+        /// The polygon's area \[m²\].
         area: f64,
     },
     /// The start is not inside the extent.
     #[error("the start ({}, {}) must lie inside the extent", short(.0), short(.1))]
     StartOutside(f64, f64),
-    /// The start's heading is no angle.
+    /// The start's heading is not an angle.
     #[error("the start's heading of {} rad must lie within ±{MAX_HEADING} rad", short(.0))]
     StartHeading(f64),
     /// The start lies inside an obstacle.

@@ -1,19 +1,19 @@
-//! Which parts of a face the free space may touch: those that no other solid buries.
+//! The parts of a face that free space may touch: those that no other solid buries.
 //!
-//! Where thousands of solids overlap, nearly all faces are buried, and what they would make with
-//! each other need not be looked at.
+//! Where thousands of solids overlap, nearly all faces are buried, and the search for corners
+//! skips them.
 
 use crate::faces::{Bounds, Face};
 use crate::outline::Outline;
 use nalgebra::{Point2, Vector2};
 
-/// What lies this deep inside of another solid is buried [m]: deeper than the hair beside a point
-/// at which free space is looked for.
+/// A part this deep inside another solid is buried [m]: deeper than the hair beside a point at
+/// which the world looks for free space.
 const DEEP: f64 = 2e-5;
-/// Places along a face that differ by less are the same [m].
+/// Places along a face that differ by less than this are the same [m].
 const SAME: f64 = 1e-6;
 
-/// From where to where along a face [m].
+/// The start and end of a part, along a face [m].
 type Part = (f64, f64);
 
 /// The exposed parts of a face, in order.
@@ -21,7 +21,7 @@ type Part = (f64, f64);
 pub(crate) struct Exposed(Vec<Part>);
 
 impl Exposed {
-    /// What `others` leave of a face, and the outside of an extent.
+    /// Finds the parts of a face inside an extent that `others` leave exposed.
     pub(crate) fn new<'a>(
         face: &Face,
         extent: Bounds,
@@ -42,19 +42,19 @@ impl Exposed {
         Self(left)
     }
 
-    /// Whether no part is exposed.
+    /// Returns whether no part is exposed.
     pub(crate) fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Whether a place along the face is exposed.
+    /// Returns whether a place along the face is exposed.
     pub(crate) fn holds(&self, place: f64) -> bool {
         let next = self.0.partition_point(|(_, end)| *end + SAME < place);
         self.0.get(next).is_some_and(|(begin, _)| begin - SAME <= place)
     }
 }
 
-/// The parts of a face deep inside of an outline, in order.
+/// Returns the parts of a face deep inside of an outline, in order.
 fn buried(face: &Face, outline: &Outline) -> Vec<Part> {
     let margin = Vector2::repeat(DEEP);
     let (low, high) = face.bounds();
@@ -74,7 +74,7 @@ fn buried(face: &Face, outline: &Outline) -> Vec<Part> {
     buried
 }
 
-/// The part of a face that is near a side of an outline.
+/// Returns the part of a face that is near a side of an outline.
 fn beside(face: &Face, (a, b): (Point2<f64>, Point2<f64>), part: Part) -> Option<Part> {
     let length = (b - a).norm();
     let along = (b - a) / length;
@@ -83,13 +83,13 @@ fn beside(face: &Face, (a, b): (Point2<f64>, Point2<f64>), part: Part) -> Option
     between(part, along.perp(&from), along.perp(&way), (-DEEP, DEEP))
 }
 
-/// The part of a face within a box.
+/// Returns the part of a face within a box.
 fn within(face: &Face, (low, high): Bounds, part: Part) -> Option<Part> {
     let part = between(part, face.a.x, face.along.x, (low.x, high.x))?;
     between(part, face.a.y, face.along.y, (low.y, high.y))
 }
 
-/// Where along a part `start + slope · place` lies between two bounds.
+/// Returns the part along which `start + slope · place` lies between two bounds.
 fn between((from, to): Part, start: f64, slope: f64, (low, high): (f64, f64)) -> Option<Part> {
     let (first, last) = ((low - start) / slope, (high - start) / slope);
     let (first, last) = match slope {
@@ -102,7 +102,7 @@ fn between((from, to): Part, start: f64, slope: f64, (low, high): (f64, f64)) ->
     (from <= to).then_some((from, to))
 }
 
-/// What is left of a part without another.
+/// Returns the remainder of one part without another.
 fn without((from, to): Part, (begin, end): Part) -> impl Iterator<Item = Part> {
     let apart = end <= from || to <= begin;
     let whole = apart.then_some((from, to));
@@ -121,7 +121,7 @@ mod tests {
         Outline::new(points, Surface::Rough)
     }
 
-    /// What is left of the face from (0, 0) to (10, 0).
+    /// Checks the exposed parts of the face from (0, 0) to (10, 0).
     #[track_caller]
     fn check(others: &[Outline], expected: &[Part]) {
         let face = Face::new(Point2::origin(), Point2::new(10.0, 0.0), Surface::Rough);

@@ -1,4 +1,4 @@
-//! Faces, and how to find them.
+//! Faces, and the index that finds them.
 
 mod face;
 mod index;

@@ -1,26 +1,26 @@
-//! Where faces meet: concave corners, which answer every sonar, and convex edges.
+//! Points where faces meet: concave corners, which answer every sonar, and convex edges.
 
 use crate::error::{MAX_PAIRS, WorldError};
 use crate::exposed::Exposed;
 use crate::faces::{Face, Index};
 use nalgebra::{Point2, Vector2};
 
-/// Choice: faces that turn by less than 30° into each other make neither a corner nor an
-/// edge, so that the sides of a circle are one round surface. The cosine of that turn.
+/// Choice: faces that turn by less than 30° into each other make neither a corner nor an edge:
+/// the sides of a circle are one round surface. This is the cosine of that turn.
 const SHARP_COSINE: f64 = 0.866_025_403_784_438_6;
 /// The sine of the angle below which faces count as parallel.
 const PARALLEL: f64 = 1e-6;
 /// Faces that come this near to each other meet [m].
 const MEETING: f64 = 1e-7;
 
-/// How faces meet.
+/// The kind of a meeting of faces.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Kind {
     /// A concave corner.
     Corner,
     /// A convex edge.
     Edge,
-    /// Faces run into each other too flatly for a corner; one ends there for the eye.
+    /// Faces that meet at too flat an angle for a corner; one of them ends there for the eye.
     Seam,
 }
 
@@ -31,16 +31,17 @@ pub(crate) struct Feature {
     pub(crate) kind: Kind,
 }
 
-/// What the end of one side of an outline and the start of the next make.
+/// Returns the feature at the joint of one side of an outline and the next.
 pub(crate) fn of_joint(before: &Face, after: &Face) -> Option<Feature> {
     let (turn, cosine) = (before.along.perp(&after.along), before.along.dot(&after.along));
     let kind = if turn < 0.0 { Kind::Corner } else { Kind::Edge };
     (cosine < SHARP_COSINE).then_some(Feature { at: after.a, kind })
 }
 
-/// The corners and seams that faces of different outlines make: crossings, and ends that
-/// stand on another face, each with the direction where free space may be. Neighbours in an
-/// outline are left to [`of_joint`].
+/// Returns the corners and seams between faces of different outlines.
+///
+/// These are crossings, and ends that stand on another face; each comes with the direction where
+/// free space may be. Neighbours in an outline are left to [`of_joint`].
 pub(crate) fn between(
     faces: &[Face],
     exposed: &[Exposed],
@@ -62,8 +63,8 @@ pub(crate) fn between(
     Ok(found)
 }
 
-/// What two faces make that meet so that of each a part lies before the other, where both are
-/// exposed.
+/// Returns the feature of two faces that meet where both are exposed, if part of each lies before
+/// the other.
 fn crossing(
     (one, exposed): (&Face, &Exposed),
     (other, other_exposed): (&Face, &Exposed),

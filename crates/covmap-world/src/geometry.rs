@@ -1,4 +1,4 @@
-//! Faces, outlines and solids, and how to find them, for who estimates a world from measurements.
+//! Faces, outlines, solids and their index, for crates that estimate a world from measurements.
 
 pub use crate::coverage::Solids;
 pub use crate::faces::{Bounds, Face, Index};

@@ -1,7 +1,7 @@
 //! The truth: simulated worlds, their echoes, driving, and the exact coverage of every cell.
 //!
-//! The stand-in for building and robot of Stachniss & Burgard (2003), section 5: a [`World`]. This crate
-//! knows nothing of sensor models.
+//! A [`World`] stands in for the building and the robot of Stachniss & Burgard (2003), section 5.
+//! This crate knows nothing of sensor models.
 //!
 //! # Units
 //! Metres, radians counter-clockwise, seconds; coverage in [0, 1].

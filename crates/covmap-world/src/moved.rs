@@ -1,15 +1,15 @@
-//! Worlds that are turned and shifted: the same geometry, cut by the grid in another way.
+//! Turned and shifted worlds: the same geometry, cut by the grid in another way.
 
 use crate::{Extent, Obstacle, Scenario, Shape, Start, Surface};
 use nalgebra::{Point2, Rotation2, Vector2};
 
 impl Scenario {
-    /// The scenario turned by `angle` \[rad\], counter-clockwise, and shifted by `shift` ≥ 0
-    /// \[m\].
+    /// Returns the scenario turned by `angle` \[rad\], counter-clockwise, and shifted by `shift`
+    /// ≥ 0 \[m\].
     ///
-    /// The extent becomes the bounding box of the turned one, larger by the shift at its left
-    /// and lower border; what lies outside of the turned extent is solid, and rough. The name
-    /// says what was done.
+    /// The extent becomes the bounding box of the turned one, larger by the shift at its left and
+    /// lower border. Everything outside of the turned extent is solid, and rough. The name states
+    /// the angle.
     #[must_use]
     pub fn moved(&self, angle: f64, shift: Vector2<f64>) -> Self {
         let Extent { width, height } = self.extent;
@@ -41,8 +41,9 @@ impl Scenario {
 }
 
 impl Scenario {
-    /// The scenario with the same surface on every obstacle. How the outside answers a world is
-    /// told when it is made.
+    /// Returns the scenario with the same surface on every obstacle.
+    ///
+    /// The surface of the outside is given when the world is made.
     #[must_use]
     pub fn with_surface(&self, surface: Surface) -> Self {
         let mut scenario = self.clone();
@@ -52,7 +53,8 @@ impl Scenario {
 }
 
 impl Shape {
-    /// The shape turned by `angle` \[rad\], with its points where `place` puts them \[m\].
+    /// Returns the shape turned by `angle` \[rad\]; `place` gives the new positions of its points
+    /// \[m\].
     #[must_use]
     pub fn moved(&self, angle: f64, place: &impl Fn((f64, f64)) -> (f64, f64)) -> Self {
         match self {
@@ -70,11 +72,12 @@ impl Shape {
     }
 }
 
-/// A filling that is thinner than this is left out \[m\].
+/// A filling thinner than this is left out \[m\].
 const THIN: f64 = 1e-6;
 
-/// The triangles, counter-clockwise, beyond the sides of a turned rectangle, up to the corners
-/// of its bounding box from `low` to `high`. The rectangle's corners are counter-clockwise.
+/// Returns the triangles, counter-clockwise, between a turned rectangle and its bounding box.
+///
+/// The box reaches from `low` to `high`. The rectangle's corners are counter-clockwise.
 pub(crate) fn beyond_sides(
     corners: [Point2<f64>; 4],
     low: Point2<f64>,
@@ -92,8 +95,10 @@ pub(crate) fn beyond_sides(
     })
 }
 
-/// What is solid around the turned extent: a triangle beyond each of its sides, up to the
-/// corner of the bounding box; and the two strips of the shift.
+/// Returns the solids around the turned extent.
+///
+/// These are a triangle beyond each of the extent's sides, up to the corner of the bounding box,
+/// and the two strips of the shift.
 fn fillings(
     corners: [Point2<f64>; 4],
     shift: Vector2<f64>,
@@ -101,7 +106,7 @@ fn fillings(
 ) -> impl Iterator<Item = Obstacle> {
     let triangles = beyond_sides(corners, Point2::from(shift), high);
     let triangles = triangles.map(|points| Shape::Polygon(points.map(|p| (p.x, p.y)).to_vec()));
-    // As a polygon: a rectangle may not be as thin as a strip.
+    // A polygon, because a rectangle may not be as thin as a strip.
     let strip = |x: f64, y: f64| {
         let shape = Shape::Polygon(vec![(0.0, 0.0), (x, 0.0), (x, y), (0.0, y)]);
         (x.min(y) > THIN).then_some(shape)
@@ -122,7 +127,7 @@ mod tests {
         coverage.iter().map(|(_, c)| (1.0 - c) * 0.01).sum()
     }
 
-    /// Shifts of every size, most of them thinner than the thinnest rectangle may be.
+    /// Shifts of every size, most of them below the least thickness of a rectangle.
     fn shift() -> impl Strategy<Value = f64> {
         prop_oneof![0.0..0.1, (-9.0..-1.0f64).prop_map(libm::exp10)]
     }

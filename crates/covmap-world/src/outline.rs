@@ -12,25 +12,25 @@ use std::f64::consts::TAU;
 const CIRCLE_SIDES: u32 = 64;
 /// The smallest area of a polygon [m²].
 const MIN_AREA: f64 = MIN_LENGTH * MIN_LENGTH * 1e-3;
-/// Points in a row that are nearer to each other are one point [m].
+/// Points in a row that are nearer to each other than this are one point [m].
 const SAME_POINT: f64 = 1e-12;
 
-/// Outlines of more sides than this have an index of them.
+/// Outlines with more sides than this have an index of them.
 const MANY_SIDES: usize = 128;
 
 /// A simple polygon, counter-clockwise, with at least three points.
 #[derive(Debug, Clone)]
 pub struct Outline {
-    /// Its corners \[m\].
+    /// The corners \[m\].
     pub points: Vec<Point2<f64>>,
-    /// What it is made of.
+    /// The surface.
     pub surface: Surface,
     bounds: Bounds,
     index: Option<Box<Index>>,
 }
 
 impl Outline {
-    /// The outline of some points, of which there are three at least.
+    /// Makes the outline of at least three points.
     ///
     /// # Panics
     /// If there is no point.
@@ -50,17 +50,17 @@ impl Outline {
         outline
     }
 
-    /// The box around it.
+    /// Returns the outline's bounding box.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }
 
-    /// Where a side begins and ends.
+    /// Returns the start and the end of a side.
     fn side(&self, i: usize) -> (Point2<f64>, Point2<f64>) {
         (self.points[i], self.points[if i + 1 < self.points.len() { i + 1 } else { 0 }])
     }
 
-    /// The sides whose boxes meet a box.
+    /// Returns the sides whose boxes meet a box.
     pub fn sides_meeting(
         &self,
         (low, high): Bounds,
@@ -78,8 +78,10 @@ impl Outline {
         })
     }
 
-    /// Whether a point lies inside: the winding number of the sides around it, counted along
-    /// a ray to the right.
+    /// Returns whether a point lies inside.
+    ///
+    /// The test is the winding number of the sides around the point, counted along a ray to the
+    /// right.
     pub fn holds(&self, point: Point2<f64>) -> bool {
         let (low, high) = self.bounds;
         if point.x < low.x || point.y < low.y || high.x < point.x || high.y < point.y {
@@ -96,7 +98,7 @@ impl Outline {
     }
 }
 
-/// The outlines of all obstacles of a scenario.
+/// Returns the outlines of all obstacles of a scenario.
 ///
 /// # Errors
 /// If an obstacle has an impossible number, or there are too many of them.
@@ -121,7 +123,7 @@ pub fn outlines(obstacles: &[Obstacle]) -> Result<Vec<Outline>, WorldError> {
     obstacles.iter().enumerate().map(outline).collect()
 }
 
-/// The outlines without those that are there before, point by point.
+/// Removes outlines that repeat an earlier one point by point.
 pub(crate) fn distinct(mut outlines: Vec<Outline>) -> Vec<Outline> {
     let mut seen = BTreeSet::new();
     outlines.retain(|outline| {
@@ -205,7 +207,7 @@ impl Check {
             return Err(WorldError::TooManyPolygonPoints { obstacle, points: given.len() });
         }
         let mut points: Vec<Point2<f64>> = Vec::with_capacity(given.len());
-        // Which of the given points each is.
+        // The index in `given` of each point.
         let mut numbers = Vec::with_capacity(given.len());
         for (number, &pair) in given.iter().enumerate() {
             let point = self.point(pair)?;
@@ -246,9 +248,10 @@ impl Check {
     }
 }
 
-/// Two sides of a closed polygon, each by its first point, that meet where they should not.
+/// Returns two sides of a closed polygon, each by its first point, that meet where they should
+/// not.
 ///
-/// Sides are compared in order of their left ends, so that only those that overlap in x meet.
+/// Sides are compared in order of their left ends: only those that overlap in x meet.
 fn crossing_sides(points: &[Point2<f64>]) -> Option<(usize, usize)> {
     let n = points.len();
     let side = |i: usize| (points[i], points[(i + 1) % n]);
@@ -274,8 +277,8 @@ fn crossing_sides(points: &[Point2<f64>]) -> Option<(usize, usize)> {
     None
 }
 
-/// Whether no point is farther from the line through two that are far apart than the shortest
-/// length.
+/// Returns whether the points lie on a line: none is farther than the shortest length from the
+/// line through two points that are far apart.
 fn lie_on_a_line(points: &[Point2<f64>]) -> bool {
     let farthest_from = |from: Point2<f64>| {
         let farther =
@@ -287,7 +290,7 @@ fn lie_on_a_line(points: &[Point2<f64>]) -> bool {
     points.iter().all(|p| along.perp(&(p - from)).abs() <= MIN_LENGTH * along.norm())
 }
 
-/// About where two sides meet, each given by its first point.
+/// Returns the approximate place where two sides meet, each given by its first point.
 fn meeting_point(points: &[Point2<f64>], first: usize, second: usize) -> Point2<f64> {
     let side = |i: usize| (points[i], points[(i + 1) % points.len()]);
     let ((a, b), (c, d)) = (side(first), side(second));
@@ -297,13 +300,13 @@ fn meeting_point(points: &[Point2<f64>], first: usize, second: usize) -> Point2<
     if (0.0..=1.0).contains(&share) { a + (b - a) * share } else { c }
 }
 
-/// Whether the path a → b → c turns back onto itself.
+/// Returns whether the path a → b → c turns back onto itself.
 fn folds_back(a: Point2<f64>, b: Point2<f64>, c: Point2<f64>) -> bool {
     let (before, after) = (b - a, c - b);
     before.dot(&after) < 0.0 && before.perp(&after).abs() <= 1e-14 * before.norm() * after.norm()
 }
 
-/// Whether the segments ab and cd have a point in common.
+/// Returns whether the segments ab and cd have a point in common.
 fn touch(a: Point2<f64>, b: Point2<f64>, c: Point2<f64>, d: Point2<f64>) -> bool {
     if a.y.max(b.y) < c.y.min(d.y) || c.y.max(d.y) < a.y.min(b.y) {
         return false;
@@ -334,7 +337,7 @@ mod tests {
     #[test]
     fn a_polygon_that_is_not_simple_is_refused() {
         let bow = [(0.0, 0.0), (2.0, 1.0), (2.0, 0.0), (0.0, 2.0)];
-        // Both of its halves are of one size: it encloses no area on balance.
+        // Both halves of the bow have the same size: the signed area is zero.
         let even_bow = [(1.0, 1.0), (3.0, 3.0), (3.0, 1.0), (1.0, 3.0)];
         let spike = [(0.0, 0.0), (1.0, 0.0), (3.0, 0.0), (1.0, 0.0), (1.0, 1.0)];
         let pinch = [(0.0, 0.0), (2.0, 0.0), (1.0, 1.0), (2.0, 2.0), (0.0, 2.0), (1.0, 1.0)];

@@ -1,4 +1,4 @@
-//! The solids and the boundary of a world that is made from a raster.
+//! The solids and the boundary of a world made from a raster.
 
 use crate::faces::Face;
 use crate::feature::{Feature, Kind};
@@ -8,8 +8,9 @@ use covmap::{Cell, Grid, Raster};
 use nalgebra::{Isometry2, Point2};
 use std::ops::Range;
 
-/// The raster without what is solid and farther than `margin` \[m\] beyond all that is free:
-/// everything outside of a world is solid anyway, and a grid over it costs memory.
+/// Returns the raster without the solid cells farther than `margin` \[m\] beyond all free cells.
+///
+/// Everything outside of a world is solid anyway, and a grid over it costs memory.
 pub(crate) fn trimmed(solid: &Raster<bool>, margin: f64) -> Raster<bool> {
     let grid = solid.grid();
     let free = solid.iter().filter_map(|(cell, solid)| (!solid).then_some(cell));
@@ -35,8 +36,8 @@ pub(crate) fn trimmed(solid: &Raster<bool>, margin: f64) -> Raster<bool> {
     raster.unwrap_or_else(|| unreachable!("it is a part of a raster"))
 }
 
-/// The disjoint outlines of all that is solid in a raster, its faces and their features, where
-/// `world_from_raster` puts them.
+/// Returns the disjoint outlines of a raster's solid cells, its faces and their features, placed
+/// by `world_from_raster`.
 pub(crate) fn solids(
     solid: &Raster<bool>,
     world_from_raster: &Isometry2<f64>,
@@ -52,7 +53,7 @@ pub(crate) fn solids(
     (outlines.collect(), (faces, features))
 }
 
-/// Disjoint rectangles that make up the solid cells: runs of a row, grown upwards.
+/// Returns disjoint rectangles that make up the solid cells: runs of a row, grown upwards.
 fn rectangles(solid: &Raster<bool>, surface: Surface) -> Vec<Outline> {
     let grid = solid.grid();
     let mut done = Vec::new();
@@ -79,7 +80,7 @@ fn rectangles(solid: &Raster<bool>, surface: Surface) -> Vec<Outline> {
     done
 }
 
-/// The faces between solid and free cells, the outside being solid, and their features.
+/// Returns the faces between solid and free cells, and their features; the outside is solid.
 fn boundary(solid: &Raster<bool>, surface: Surface) -> (Vec<Face>, Vec<Feature>) {
     let grid = solid.grid();
     let mut faces = Vec::new();
@@ -118,7 +119,7 @@ fn boundary(solid: &Raster<bool>, surface: Surface) -> (Vec<Face>, Vec<Feature>)
     (faces, features)
 }
 
-/// Maximal runs of 0..n in which `kind` is the same and not `None`.
+/// Returns the maximal runs of 0..n in which `kind` is the same and not `None`.
 fn runs<K: PartialEq>(n: i32, kind: impl Fn(i32) -> Option<K>) -> Vec<(Range<i32>, K)> {
     let mut runs: Vec<(Range<i32>, K)> = Vec::new();
     for i in 0..n {

@@ -1,27 +1,27 @@
-//! Worlds as they are written in a file.
+//! Worlds as files describe them.
 
 use serde::{Deserialize, Serialize};
 
-/// A world as it is written in a file: an extent with obstacles in it.
+/// A world as a file describes it: an extent with obstacles in it.
 ///
-/// The origin is the lower left corner of the extent; everything outside of the extent is
-/// solid. Obstacles may overlap each other and reach beyond the extent.
+/// The origin is the lower left corner of the extent; everything outside of the extent is solid.
+/// Obstacles may overlap each other and reach beyond the extent.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Scenario {
     /// The world's name, which also names the results of a run in it.
     pub name: String,
-    /// Its size.
+    /// The world's size.
     pub extent: Extent,
-    /// Where the robot starts; without it the roomiest place is taken. In a file it stands as
-    /// it is, without `Some`.
+    /// The robot's start; without it the robot starts at the roomiest place. A file gives the
+    /// start without `Some`.
     #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
     pub start: Option<Start>,
-    /// What stands in it, in any order.
+    /// The obstacles, in any order.
     pub obstacles: Vec<Obstacle>,
 }
 
-/// Reads and writes what is there without wrapping it in `Some`.
+/// Reads and writes a value without wrapping it in `Some`.
 mod bare {
     use super::Start;
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -53,35 +53,36 @@ pub struct Extent {
     pub height: f64,
 }
 
-/// Where the robot starts.
+/// The robot's start.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Start {
-    /// From the left border of the extent \[m\].
+    /// Distance from the left border of the extent \[m\].
     pub x: f64,
-    /// From its lower border \[m\].
+    /// Distance from the lower border of the extent \[m\].
     pub y: f64,
-    /// From the x axis, counter-clockwise \[rad\].
+    /// Heading from the x axis, counter-clockwise \[rad\].
     pub heading: f64,
 }
 
-/// Something solid that stands in the world.
+/// A solid that stands in the world.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Obstacle {
-    /// Its outline.
+    /// The obstacle's outline.
     pub shape: Shape,
-    /// How it answers a sonar.
+    /// The obstacle's answer to a sonar.
     pub surface: Surface,
 }
 
-/// How a surface answers a sonar; the critical angles are in
-/// [`SonarPhysics`](crate::SonarPhysics).
+/// The answer of a surface to a sonar.
+///
+/// The critical angles are in [`SonarPhysics`](crate::SonarPhysics).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Surface {
-    /// It scatters, and answers up to a large angle from its normal.
+    /// Scatters sound, and answers up to a large angle from its normal.
     Rough,
-    /// It mirrors, and answers only near its normal.
+    /// Mirrors sound, and answers only near its normal.
     Smooth,
 }
 
@@ -93,18 +94,18 @@ pub enum Shape {
     Rectangle {
         /// Centre \[m\].
         center: (f64, f64),
-        /// Full width and height before it is turned \[m\].
+        /// Full width and height before the turn \[m\].
         size: (f64, f64),
-        /// By how much it is turned \[rad\].
+        /// Angle of the turn \[rad\].
         angle: f64,
     },
     /// A simple polygon, of either winding \[m\].
     Polygon(Vec<(f64, f64)>),
     /// A straight wall with flat ends.
     Wall {
-        /// One end of its middle line \[m\].
+        /// One end of the wall's middle line \[m\].
         from: (f64, f64),
-        /// The other end \[m\].
+        /// The other end of the middle line \[m\].
         to: (f64, f64),
         /// Full thickness \[m\].
         thickness: f64,
@@ -119,7 +120,7 @@ pub enum Shape {
 }
 
 impl Shape {
-    /// The word that names the shape in a file.
+    /// Returns the word that names the shape in a file.
     pub(crate) fn kind(&self) -> &'static str {
         match self {
             Self::Rectangle { .. } => "Rectangle",

@@ -1,4 +1,4 @@
-//! What a robot can reach and see in truth: the yardstick of a run.
+//! The cells that a robot can truly reach and see: the yardstick of a run.
 
 use crate::scenario::Surface;
 use crate::world::World;
@@ -8,31 +8,31 @@ use nalgebra::{Isometry2, Point2, Vector2};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// A cell this full is solid.
+/// Coverage from which a cell is solid.
 const SOLID: f64 = 0.5;
-/// Lengths that differ by less are equal [m].
+/// Lengths that differ by less than this are equal [m].
 const EQUAL: f64 = 1e-9;
-/// How many parts the cells that look are divided into.
+/// The number of parts into which the viewing cells are divided.
 const PARTS: usize = 16;
 
-/// What can be seen from some places.
+/// The cells that can be seen from some places.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Seen {
     /// The cells that a line of sight passes before it meets a solid.
     pub in_sight: Raster<bool>,
     /// The cells, at least half full, in which a line of sight ends.
     pub first_solid: Raster<bool>,
-    /// Those of them in which one ends at a smooth surface.
+    /// Those of `first_solid` in which a line of sight ends at a smooth surface.
     pub first_smooth: Raster<bool>,
 }
 
 impl World {
-    /// The roomiest place: the centre of the free cell with the largest clearance in the
+    /// Returns the roomiest place: the centre of the free cell with the largest clearance in the
     /// largest free component, with heading 0.
     ///
-    /// A cell is free if its coverage is 0 and a disc of `radius` \[m\] fits at its centre;
-    /// in a component the disc gets from each cell to any other by its [steps](Self::steps).
-    /// Ties go to the first in row-major order. `None` if no cell is free.
+    /// A cell is free if its coverage is 0 and a disc of `radius` \[m\] fits at its centre. In a
+    /// component the disc gets from each cell to any other by its [steps](Self::steps). Ties go
+    /// to the first in row-major order. The result is `None` if no cell is free.
     pub fn default_start(&self, coverage: &Raster<f64>, radius: f64) -> Option<Isometry2<f64>> {
         let grid = *coverage.grid();
         let clearance = self.clearances(&grid);
@@ -49,7 +49,7 @@ impl World {
         Some(Isometry2::new(grid.center(grid.cell(best)).coords, 0.0))
     }
 
-    /// The steps that a disc of `radius` \[m\] can take without a bump.
+    /// Returns the steps that a disc of `radius` \[m\] can take without a bump.
     pub fn steps(&self, grid: &Grid, radius: f64) -> Steps {
         self.steps_over(grid, &self.clearances(grid), radius)
     }
@@ -58,7 +58,7 @@ impl World {
         let center = |index: usize| grid.center(grid.cell(index));
         let mut steps = Steps::between(grid, |i| clearance[i] >= radius);
         let longest = grid.resolution() * std::f64::consts::SQRT_2;
-        // Half of the steps: the others are the same, back.
+        // Half of the steps: the others are the same, in reverse.
         let bumps = |from: usize| -> Vec<(usize, usize)> {
             if !(radius..radius + longest).contains(&clearance[from]) {
                 return Vec::new();
@@ -77,16 +77,16 @@ impl World {
         steps
     }
 
-    /// The cells whose centres a disc of `radius` \[m\] truly reaches from `start`, by its
-    /// [steps](Self::steps).
+    /// Returns the cells whose centres a disc of `radius` \[m\] truly reaches from `start`, by
+    /// its [steps](Self::steps).
     ///
-    /// It begins at the centre of the start's cell; or, if it cannot get there, from the start
-    /// itself with steps to the centres of that cell's neighbours.
+    /// The disc begins at the centre of the start's cell. If the disc cannot get there, it begins
+    /// at the start itself, with steps to the centres of that cell's neighbours.
     pub fn reachable_cells(&self, grid: &Grid, start: Point2<f64>, radius: f64) -> Raster<bool> {
         self.reachable_by(&self.steps(grid, radius), start, radius)
     }
 
-    /// The same, by the steps of a disc that are known already.
+    /// Returns the cells of [`World::reachable_cells`], by steps that are known already.
     pub fn reachable_by(&self, steps: &Steps, start: Point2<f64>, radius: f64) -> Raster<bool> {
         let grid = steps.grid();
         let Some(home) = grid.cell_at(start).and_then(|cell| grid.index(cell)) else {
@@ -103,8 +103,10 @@ impl World {
         steps.reached(around.filter(|i| arrives(*i)))
     }
 
-    /// What is seen within `range` \[m\] from the centres of the cells that hold some places;
-    /// places outside of the grid are passed over.
+    /// Returns the cells seen within `range` \[m\] from the centres of the cells that hold some
+    /// places.
+    ///
+    /// Places outside of the grid are passed over.
     ///
     /// # Panics
     /// If `coverage` is not on `grid`.
@@ -124,9 +126,9 @@ impl World {
         self.cells_seen(grid, coverage, &from, range)
     }
 
-    /// What is seen within `range` \[m\] from the centres of the cells `from`.
+    /// Returns the cells seen within `range` \[m\] from the centres of the cells `from`.
     ///
-    /// From each, rays are cast all around, less than a cell apart at `range`; those of
+    /// Rays are cast all around from each centre, less than a cell apart at `range`; the rays of
     /// neighbouring cells lie between each other. `coverage` is the world's, on the same grid.
     ///
     /// # Panics
@@ -160,7 +162,7 @@ impl World {
         })
     }
 
-    /// The clearance at the centre of every cell.
+    /// Returns the clearance at the centre of every cell.
     fn clearances(&self, grid: &Grid) -> Vec<f64> {
         let clearance = |i| self.clearance(grid.center(grid.cell(i)));
         (0..grid.len()).into_par_iter().map(clearance).collect()
@@ -189,13 +191,13 @@ impl Fan {
         Self { directions: (0..count).map(direction).collect() }
     }
 
-    /// Every second direction; the other half for the four neighbours of a cell.
+    /// Returns every second direction; the four neighbours of a cell use the other half.
     fn of(&self, cell: Cell) -> impl Iterator<Item = &Vector2<f64>> {
         self.directions.iter().skip(usize::from((cell.x + cell.y) % 2 != 0)).step_by(2)
     }
 }
 
-/// Looks around.
+/// A viewer at the centres of cells.
 struct Eye<'a> {
     world: &'a World,
     grid: &'a Grid,
@@ -231,7 +233,7 @@ impl Eye<'_> {
     }
 }
 
-/// Visits the cells of a grid along a ray, as long as it stays in the grid.
+/// Visits the cells of a grid along a ray, up to the grid's border.
 pub fn cells_along(
     grid: &Grid,
     origin: Point2<f64>,

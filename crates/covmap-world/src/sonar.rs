@@ -1,4 +1,4 @@
-//! Simulated sonars: their physics, what answers them, and what they report.
+//! Simulated sonars: their physics, their echoes, and their readings.
 
 mod echo;
 mod fire;

@@ -1,4 +1,4 @@
-//! The world itself: faces, solids and what they enclose.
+//! The world itself: faces, solids and the space that they enclose.
 
 use crate::error::{MAX_BURIALS, MAX_EXTENT, MAX_HEADING, MIN_LENGTH, WorldError};
 use crate::exposed::Exposed;
@@ -28,11 +28,11 @@ pub struct World {
     low: Point2<f64>,
     high: Point2<f64>,
     start: Option<Isometry2<f64>>,
-    /// What is solid inside the extent; with `disjoint`, no two overlap.
+    /// The solids inside the extent; with `disjoint`, no two overlap.
     pub(crate) outlines: Vec<Outline>,
     pub(crate) disjoint: bool,
     outline_index: Index,
-    /// Without those that are buried in a solid.
+    /// The faces that no solid buries.
     pub(crate) faces: Vec<Face>,
     index: Index,
     pub(crate) features: Vec<Feature>,
@@ -47,12 +47,13 @@ pub(crate) struct Hit {
 }
 
 impl World {
-    /// The world that a scenario describes; everything outside of its extent is solid, with
-    /// the surface `outside`.
+    /// Makes the world that a scenario describes.
+    ///
+    /// Everything outside of the scenario's extent is solid, with the surface `outside`.
     ///
     /// # Errors
-    /// If the scenario has a number that is not finite, absurd or not positive, a polygon
-    /// that is not simple, too many obstacles, or a start that is not free.
+    /// If the scenario has a number that is not finite, absurd or not positive, a polygon that is
+    /// not simple, too many obstacles, or a start that is not free.
     pub fn from_scenario(scenario: &Scenario, outside: Surface) -> Result<Self, WorldError> {
         let size = Vector2::new(scenario.extent.width, scenario.extent.height);
         if !size.iter().all(|v| (MIN_LENGTH..=MAX_EXTENT).contains(v)) {
@@ -67,7 +68,7 @@ impl World {
         world.find_faces(&border, outside)?;
         if let Some(start) = scenario.start {
             let (x, y, heading) = (start.x, start.y, start.heading);
-            // Not a number is no heading.
+            // NaN is not a heading.
             if !(-MAX_HEADING..=MAX_HEADING).contains(&heading) {
                 return Err(WorldError::StartHeading(heading));
             }
@@ -82,11 +83,11 @@ impl World {
         Ok(world)
     }
 
-    /// The world in which each `true` cell of a raster is a solid square with a surface, and
+    /// Makes the world of a raster: each `true` cell is a solid square with a surface, and
     /// everything outside of the raster is solid too.
     ///
-    /// Faces of cells in a row are one smooth face. The extent is that of the raster, without
-    /// what is solid and more than .30 m beyond all that is free.
+    /// Faces of cells in a row are one smooth face. The extent is that of the raster, without the
+    /// solid cells more than .30 m beyond all free cells.
     ///
     /// # Errors
     /// If the name cannot name a file, or a side is longer than 10 km.
@@ -98,8 +99,9 @@ impl World {
         Self::from_turned_raster(name, solid, &Isometry2::identity(), surface)
     }
 
-    /// The world of a raster that stands somewhere else: `world_from_raster` turns and shifts
-    /// it, squares and all. The extent is the box around it.
+    /// Makes the world of a raster that `world_from_raster` turns and shifts, squares and all.
+    ///
+    /// The extent is the box around the turned raster.
     ///
     /// # Errors
     /// As [`World::from_raster`].
@@ -198,39 +200,41 @@ impl World {
         Ok(())
     }
 
-    /// What all outlines but its own leave of a face. Counts how many it looked at.
+    /// Returns the parts of a face that the other outlines leave exposed; counts the pairs it
+    /// examined.
     fn exposed(&self, face: &Face, own: usize, all: &AtomicUsize) -> Result<Exposed, WorldError> {
         let mut pairs = 0;
         let others = self.outline_index.meeting(face.bounds()).filter(|number| *number != own);
         let others = others.inspect(|_| pairs += 1).take(MAX_BURIALS);
         let exposed =
             Exposed::new(face, self.bounds(), others.map(|number| &self.outlines[number]));
-        // What is counted does not depend on the order.
+        // The count does not depend on the order.
         let pairs = pairs + all.fetch_add(pairs, Ordering::Relaxed);
         if pairs > MAX_BURIALS { Err(WorldError::TooDense) } else { Ok(exposed) }
     }
 
-    /// The world's name.
+    /// Returns the world's name.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The lower left corner of the extent \[m\].
+    /// Returns the lower left corner of the extent \[m\].
     pub fn lower_left(&self) -> Point2<f64> {
         self.low
     }
 
-    /// Width and height of the extent \[m\].
+    /// Returns the width and height of the extent \[m\].
     pub fn size(&self) -> Vector2<f64> {
         self.high - self.low
     }
 
-    /// The grid of cells of side `resolution` \[m\] over the extent, aligned to its lower
-    /// left corner, with a margin of at least .30 m and two cells, so that the outer wall has
-    /// its cells.
+    /// Returns the grid of cells of side `resolution` \[m\] over the extent.
+    ///
+    /// The grid is aligned to the extent's lower left corner. A margin of at least .30 m and two
+    /// cells holds the outer wall.
     ///
     /// # Errors
-    /// If the resolution is not positive, or makes too many cells.
+    /// If the resolution is not positive, or gives too many cells.
     pub fn grid(&self, resolution: f64) -> Result<Grid, GridError> {
         let cells = (MARGIN / resolution - 1e-9).ceil().clamp(MARGIN_CELLS, 1e5);
         #[allow(
@@ -240,16 +244,16 @@ impl World {
         Grid::covering(self.low, self.size(), resolution, cells as usize)
     }
 
-    /// The start that the scenario gives: `world_from_robot`.
+    /// Returns the start that the scenario gives: `world_from_robot`.
     ///
-    /// Its centre is free; whether the robot fits there is for the caller to ask with
-    /// [`World::clearance`].
+    /// The start's centre is free; the caller asks [`World::clearance`] whether the robot fits
+    /// there.
     pub fn given_start(&self) -> Option<Isometry2<f64>> {
         self.start
     }
 
-    /// The distance from a point to the nearest solid \[m\]; 0 inside a solid and outside of
-    /// the extent.
+    /// Returns the distance from a point to the nearest solid \[m\]; 0 inside a solid and outside
+    /// of the extent.
     pub fn clearance(&self, point: Point2<f64>) -> f64 {
         if self.is_solid(point) {
             return 0.0;
@@ -258,16 +262,17 @@ impl World {
         self.index.nearest_to(point, f64::INFINITY, distance).map_or(0.0, |(_, d)| d)
     }
 
-    /// Whether a point lies inside a solid or outside of the extent.
+    /// Returns whether a point lies inside a solid or outside of the extent.
     pub fn is_solid(&self, point: Point2<f64>) -> bool {
-        // Not a number is outside. Solids hold their lower and left borders only.
+        // NaN is outside. Solids hold their lower and left borders only.
         let free = (self.low.x..self.high.x).contains(&point.x)
             && (self.low.y..self.high.y).contains(&point.y);
         !free || self.outline_index.meeting((point, point)).any(|i| self.outlines[i].holds(point))
     }
 
-    /// The distance at which a ray first meets a solid \[m\], if within `max` \[m\]; 0 if it
-    /// starts in one. `direction` is a unit vector.
+    /// Returns the distance at which a ray first meets a solid \[m\], if within `max` \[m\].
+    ///
+    /// The distance is 0 if the ray starts in a solid. `direction` is a unit vector.
     pub fn cast_ray(&self, origin: Point2<f64>, direction: Vector2<f64>, max: f64) -> Option<f64> {
         if self.is_solid(origin) {
             return Some(0.0);
@@ -275,7 +280,7 @@ impl World {
         self.first_hit(origin, direction, max).map(|hit| hit.distance)
     }
 
-    /// The first face that a ray from free space enters within `max` \[m\].
+    /// Returns the first face that a ray from free space enters within `max` \[m\].
     pub(crate) fn first_hit(
         &self,
         origin: Point2<f64>,
@@ -287,13 +292,13 @@ impl World {
         found.map(|(face, distance)| Hit { distance, face })
     }
 
-    /// The faces whose boxes meet a box.
+    /// Returns the faces whose boxes meet a box.
     pub(crate) fn faces_meeting(&self, bounds: Bounds) -> impl Iterator<Item = usize> + '_ {
         self.index.meeting(bounds)
     }
 
-    /// Whether there is free space a hair beside a point: looked for in 16 directions, first
-    /// where it is likely.
+    /// Returns whether there is free space a hair beside a point, in one of 16 directions, the
+    /// likely ones first.
     fn touches_free_space(&self, point: Point2<f64>, likely: Vector2<f64>) -> bool {
         const DIRECTIONS: i32 = 16;
         let hair = |k: i32| {
@@ -307,12 +312,12 @@ impl World {
     }
 
     fn is_inside(&self, point: Point2<f64>) -> bool {
-        // Not a number is outside.
+        // NaN is outside.
         (self.low.x..=self.high.x).contains(&point.x)
             && (self.low.y..=self.high.y).contains(&point.y)
     }
 
-    /// The corners of the extent \[m\].
+    /// Returns the corners of the extent \[m\].
     pub(crate) fn bounds(&self) -> Bounds {
         (self.low, self.high)
     }
@@ -323,8 +328,8 @@ fn index_of(origin: Point2<f64>, features: &[Feature]) -> Index {
     Index::new(origin, &boxes)
 }
 
-/// What the faces of each ring make where they join, if that is exposed, each with the direction
-/// where free space may be.
+/// Returns the features at the exposed joints of each ring's faces, each with the direction where
+/// free space may be.
 fn joints(rings: &[(usize, Face)], exposed: &[Exposed]) -> Vec<(Feature, Vector2<f64>)> {
     let mut found = Vec::new();
     let mut exposed = exposed.iter();

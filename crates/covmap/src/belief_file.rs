@@ -1,4 +1,4 @@
-//! The whole posterior as bytes: what `belief.bin` holds.
+//! The whole posterior as bytes: the content of `belief.bin`.
 //!
 //! Little endian: the magic `COVMAP`, version (u16), bins (u32), width and height (u64),
 //! lower left corner x, y and resolution (f64, m); then for each cell, row by row from the
@@ -13,7 +13,7 @@ const MAGIC: &[u8; 6] = b"COVMAP";
 const VERSION: u16 = 1;
 const HEADER: usize = 6 + 2 + 4 + 8 + 8 + 24;
 
-/// Why bytes are not a belief.
+/// Reason why bytes are not a belief.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum BeliefFileError {
     /// The bytes do not begin as a belief does.
@@ -25,12 +25,12 @@ pub enum BeliefFileError {
     /// More or fewer bytes than the header promises.
     #[error("the belief file has {actual} bytes where its header promises {expected}")]
     Length {
-        /// What the header promises.
+        /// Number of bytes that the header promises.
         expected: u128,
-        /// What is there.
+        /// Number of bytes that are there.
         actual: usize,
     },
-    /// A cell whose posterior is no posterior.
+    /// A cell has no valid posterior.
     #[error("cell {0} of the belief file (row by row) has no valid posterior")]
     Posterior(usize),
     /// The geometry is invalid.
@@ -58,7 +58,7 @@ impl<'a> Reader<'a> {
 }
 
 impl CoverageMap {
-    /// The whole posterior as bytes, exactly.
+    /// Returns the whole posterior as bytes, exactly.
     pub fn to_bytes(&self) -> Vec<u8> {
         let mut out = Vec::with_capacity(HEADER + self.evidence.len() * (1 + 4 * self.bins));
         out.extend(MAGIC);
@@ -76,7 +76,7 @@ impl CoverageMap {
         out
     }
 
-    /// The map that [`Self::to_bytes`] wrote, bit for bit.
+    /// Reads the map that [`Self::to_bytes`] wrote, bit for bit.
     ///
     /// # Errors
     /// If the bytes are not a belief of this version, are cut short or too long, or hold

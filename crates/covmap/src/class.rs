@@ -1,6 +1,6 @@
-//! What a true coverage is: the class of the cell, and the bins beside it.
+//! The class of a true coverage, and the bins beside it.
 
-/// A coverage this near to 0 or to 1 is one of them: exact coverages are good to this.
+/// Tolerance of exact coverages: a coverage nearer than this to 0 or to 1 counts as 0 or 1.
 const EXACT: f64 = 1e-9;
 
 /// The class of a cell by its true coverage.
@@ -15,7 +15,7 @@ pub enum Class {
 }
 
 impl Class {
-    /// The class of a true coverage.
+    /// Returns the class of a true coverage.
     pub fn of(coverage: f64) -> Self {
         match coverage {
             c if c < EXACT => Self::Free,
@@ -25,8 +25,8 @@ impl Class {
     }
 }
 
-/// The bin below a coverage, below the last one, and the fraction of the way to the next: how
-/// a coverage between two bins is divided among them.
+/// Returns the bin below a coverage, and the fraction of the way to the next bin. The fraction
+/// divides a coverage between the two bins. The bin is never the last one.
 ///
 /// # Panics
 /// Unless there are at least two bins.

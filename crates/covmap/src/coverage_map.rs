@@ -8,7 +8,7 @@ use crate::histogram::{MAX_BINS, MIN_BINS, PROBABILITY_FLOOR, mode_bin, product}
 use crate::{Cell, Grid, Histogram, Raster, bin_coverage};
 use block::entropy;
 
-/// Why a map cannot be made.
+/// Reason why a map cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum MapError {
     /// The number of bins is out of range.
@@ -16,33 +16,32 @@ pub enum MapError {
     Bins(usize),
 }
 
-/// What one measurement did to one cell.
+/// The change of one cell by one measurement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Change {
     /// The cell whose posterior changed.
     pub cell: Cell,
-    /// Its entropy before \[nats\].
+    /// Entropy of the posterior before \[nats\].
     pub before: f64,
-    /// Its entropy after \[nats\].
+    /// Entropy of the posterior after \[nats\].
     pub after: f64,
 }
 
-/// Whether anything touched a cell yet.
+/// The kind of evidence on a cell so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Evidence {
-    /// No measurement touched it: its posterior is the uniform prior.
+    /// No measurement touched the cell: its posterior is the uniform prior.
     Unknown,
-    /// A measurement touched it.
+    /// A measurement touched the cell.
     Measured,
-    /// The robot's body filled it: it is free, for good.
+    /// The robot's body filled the cell: the cell is free, for good.
     Pinned,
 }
 
 /// A coverage map: for each cell of a grid a posterior over n coverages.
 ///
-/// All cells start UNKNOWN, with a uniform posterior: the only prior that the step to
-/// Eq. (6) allows. A cell that no measurement has touched says so ([`is_known`]), since the
-/// mode of its posterior would be a tie.
+/// All cells start UNKNOWN, with a uniform posterior: the only prior that the step to Eq. (6) allows.
+/// [`is_known`] tells whether a cell is still unknown, since the mode of a uniform posterior is a tie.
 ///
 /// Posteriors are stored as f32; [`multiply`] computes in f64, [`multiply_block`] in f32.
 ///
@@ -55,13 +54,13 @@ pub struct CoverageMap {
     pub(crate) bins: usize,
     pub(crate) posterior: Vec<f32>,
     pub(crate) evidence: Vec<Evidence>,
-    // Derived from the posterior, kept because everybody asks:
+    // Derived from the posterior, and kept because every caller asks for them:
     pub(crate) entropy: Vec<f32>,
     pub(crate) mode_bin: Vec<u8>,
 }
 
 impl CoverageMap {
-    /// A map of which nothing is known.
+    /// Creates a map in which every cell is unknown.
     ///
     /// # Errors
     /// If the number of bins is not in 2..=64.
@@ -82,7 +81,7 @@ impl CoverageMap {
         })
     }
 
-    /// The map with given posteriors; the derived values are computed.
+    /// Creates the map with given posteriors, and computes the derived values.
     pub(crate) fn from_parts(
         grid: Grid,
         bins: usize,
@@ -100,19 +99,19 @@ impl CoverageMap {
         Ok(map)
     }
 
-    /// How many bytes a map takes.
+    /// Returns the number of bytes of a map.
     pub fn bytes(grid: &Grid, bins: usize) -> u64 {
-        // A posterior in f32; of evidence, entropy and mode one each.
+        // A posterior in f32, and one evidence, one entropy and one mode.
         let by_cell = bins.saturating_mul(size_of::<f32>()).saturating_add(1 + 4 + 1);
         u64::try_from(grid.len().saturating_mul(by_cell)).unwrap_or(u64::MAX)
     }
 
-    /// The geometry of the map.
+    /// Returns the geometry of the map.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// The number of bins, n.
+    /// Returns the number of bins, n.
     pub fn bins(&self) -> usize {
         self.bins
     }
@@ -121,20 +120,20 @@ impl CoverageMap {
         self.grid.index(cell).unwrap_or_else(|| panic!("{cell:?} lies outside the map"))
     }
 
-    /// Whether any measurement has touched the cell.
+    /// Returns whether a measurement or the robot's body has touched the cell.
     ///
     /// # Panics
-    /// This and all that follows: if the cell lies outside the grid.
+    /// This and the methods below panic if the cell lies outside the grid.
     pub fn is_known(&self, cell: Cell) -> bool {
         self.evidence[self.index(cell)] != Evidence::Unknown
     }
 
-    /// Whether the cell is free for good, because the robot stood there.
+    /// Returns whether the cell is free for good, because the robot stood there.
     pub fn is_pinned(&self, cell: Cell) -> bool {
         self.evidence[self.index(cell)] == Evidence::Pinned
     }
 
-    /// The posterior p(c_l) of a cell: uniform if the cell is unknown.
+    /// Returns the posterior p(c_l) of a cell: uniform if the cell is unknown.
     pub fn histogram(&self, cell: Cell) -> Histogram {
         let mut weights = [0.0; MAX_BINS];
         self.read_posterior(cell, &mut weights[..self.bins]);
@@ -145,7 +144,7 @@ impl CoverageMap {
     /// Writes the stored probability of each bin of a cell to `out`.
     ///
     /// # Panics
-    /// Also if `out` has not as many places as the map has bins.
+    /// Also if `out` does not have one place for each bin.
     pub fn read_posterior(&self, cell: Cell, out: &mut [f64]) {
         let start = self.index(cell) * self.bins;
         assert_eq!(out.len(), self.bins, "one place for each bin");
@@ -154,44 +153,43 @@ impl CoverageMap {
         }
     }
 
-    /// The entropy of a cell's posterior, Eq. (11) \[nats\].
+    /// Returns the entropy of a cell's posterior, Eq. (11) \[nats\].
     pub fn entropy(&self, cell: Cell) -> f64 {
         f64::from(self.entropy[self.index(cell)])
     }
 
-    /// The most likely coverage of a cell: the maximum likelihood map of section 3.
-    /// A tie is the lower coverage, so an unknown cell answers 0: ask [`Self::is_known`].
+    /// Returns the most likely coverage of a cell: the maximum likelihood map of section 3. A tie goes to the
+    /// lower coverage, so the mode of an unknown cell is 0; [`Self::is_known`] tells the two apart.
     pub fn mode(&self, cell: Cell) -> f64 {
         bin_coverage(usize::from(self.mode_bin[self.index(cell)]), self.bins)
     }
 
-    /// The expected coverage of a cell.
+    /// Returns the expected coverage of a cell.
     pub fn mean(&self, cell: Cell) -> f64 {
         self.histogram(cell).mean()
     }
 
-    /// The central interval of a cell's coverage with probability `level`.
+    /// Returns the central interval of a cell's coverage with probability `level`.
     pub fn credible_interval(&self, cell: Cell, level: f64) -> (f64, f64) {
         self.histogram(cell).credible_interval(level)
     }
 
-    /// The most likely coverage of every cell; `None` where the map is unknown.
+    /// Returns the most likely coverage of every cell; `None` for an unknown cell.
     pub fn maximum_likelihood(&self) -> Raster<Option<f64>> {
         Raster::from_fn(self.grid, |cell| self.is_known(cell).then(|| self.mode(cell)))
     }
 
-    /// The entropy of every cell \[nats\].
+    /// Returns the entropy of every cell \[nats\].
     pub fn entropy_map(&self) -> Raster<f64> {
         Raster::from_fn(self.grid, |cell| self.entropy(cell))
     }
 
-    /// Multiplies the evidence of one measurement, one weight for each bin, into the
-    /// posterior of a cell, Eq. (8), and normalises it over the floor
-    /// [`PROBABILITY_FLOOR`].
+    /// Multiplies the evidence of one measurement into the posterior of a cell, Eq. (8), and normalises the
+    /// posterior over the floor [`PROBABILITY_FLOOR`]. The evidence has one weight for each bin.
     ///
-    /// Returns what changed; `None` if the cell is pinned, or the stored posterior stayed
-    /// the same to the last bit, or the evidence is impossible (no bin is left with any
-    /// weight), which then counts for nothing.
+    /// Returns the change; `None` if the cell is pinned, or the stored posterior of a known cell
+    /// stays the same to the last bit, or the evidence is impossible (no bin is left with any
+    /// weight). Impossible evidence is ignored.
     ///
     /// # Panics
     /// Also if there is not one weight for each bin.
@@ -211,9 +209,9 @@ impl CoverageMap {
         self.store(cell, index, posterior, Evidence::Measured)
     }
 
-    /// Declares that a cell is free, for good: the body of the robot was there and touched
-    /// nothing. All but the floor of its probability goes to coverage 0, and no measurement
-    /// changes it any more. Returns what changed, if anything did.
+    /// Declares that a cell is free, for good: the body of the robot was there and touched nothing.
+    /// All of the cell's probability but the floor goes to coverage 0, and no later measurement
+    /// changes the cell. Returns the change, if there is one.
     pub fn pin_free(&mut self, cell: Cell) -> Option<Change> {
         let index = self.index(cell);
         let mut free = [0.0; MAX_BINS];

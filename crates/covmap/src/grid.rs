@@ -9,9 +9,8 @@ pub const MAX_CELLS: usize = 20_000_000;
 
 /// A cell by its column `x` and its row `y`, counted from the lower left corner.
 ///
-/// Coordinates are signed so that offsets between cells can be added; only
-/// [`Grid::index`] decides whether a cell lies in a grid. Cells are ordered
-/// row by row, as all ties of this project are broken.
+/// Coordinates are signed, so offsets between cells can be added. Only [`Grid::index`] decides whether a cell
+/// lies in a grid. Cells are ordered row by row; this project breaks all ties in that order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct Cell {
     /// Column, growing to the right.
@@ -21,12 +20,13 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// The cell in column `x` of row `y`.
+    /// Returns the cell in column `x` of row `y`.
     pub fn new(x: i32, y: i32) -> Self {
         Self { x, y }
     }
 
-    /// The cell `dx` columns to the right and `dy` rows up; no farther out than there are numbers.
+    /// Returns the cell `dx` columns to the right and `dy` rows up. Coordinates saturate at the
+    /// bounds of `i32`.
     #[must_use]
     pub fn offset(self, dx: i32, dy: i32) -> Self {
         Self { x: self.x.saturating_add(dx), y: self.y.saturating_add(dy) }
@@ -45,7 +45,7 @@ impl PartialOrd for Cell {
     }
 }
 
-/// Why a grid cannot be made.
+/// Reason why a grid cannot be made.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum GridError {
     /// The resolution is not a positive length.
@@ -99,11 +99,12 @@ impl From<Grid> for GridFields {
 }
 
 impl Grid {
-    /// The grid of `width × height` cells of side `resolution` \[m\] whose lower left corner
-    /// is at `lower_left` \[m\].
+    /// Returns the grid of `width × height` cells of side `resolution` \[m\] whose lower left
+    /// corner is at `lower_left` \[m\].
     ///
     /// # Errors
-    /// If a number is not finite or not positive, or there are no cells or too many.
+    /// If the resolution is not finite or not positive, a coordinate of the corner is not finite or
+    /// not within ±10⁹ m, or there are no cells or more than [`MAX_CELLS`].
     pub fn new(
         lower_left: Point2<f64>,
         resolution: f64,
@@ -125,12 +126,12 @@ impl Grid {
         Ok(Self { lower_left, resolution, width, height })
     }
 
-    /// The grid that covers a rectangle of `size` \[m\] with its lower left corner at
-    /// `lower_left`, aligned to that corner: `ceil(size / r)` cells a side, and
-    /// `margin` more cells all around.
+    /// Returns the grid that covers a rectangle of `size` \[m\]. The rectangle has its lower left
+    /// corner at `lower_left`, to which the cells are aligned. The grid has `ceil(size / r)` cells
+    /// a side, and `margin` more cells all around.
     ///
     /// # Errors
-    /// As [`Grid::new`].
+    /// As [`Grid::new`], and if `size` is not finite or not positive.
     pub fn covering(
         lower_left: Point2<f64>,
         size: Vector2<f64>,
@@ -157,44 +158,44 @@ impl Grid {
         Self::new(corner, resolution, cells(size.x), cells(size.y))
     }
 
-    /// The lower left corner of cell (0, 0) \[m\].
+    /// Returns the lower left corner of cell (0, 0) \[m\].
     #[inline]
     pub fn lower_left(&self) -> Point2<f64> {
         self.lower_left
     }
 
-    /// The side of a cell, r \[m\].
+    /// Returns the side of a cell, r \[m\].
     #[inline]
     pub fn resolution(&self) -> f64 {
         self.resolution
     }
 
-    /// The number of columns.
+    /// Returns the number of columns.
     #[inline]
     pub fn width(&self) -> usize {
         self.width
     }
 
-    /// The number of rows.
+    /// Returns the number of rows.
     #[inline]
     pub fn height(&self) -> usize {
         self.height
     }
 
-    /// The number of cells.
+    /// Returns the number of cells.
     #[allow(clippy::len_without_is_empty, reason = "a grid is never empty")]
     pub fn len(&self) -> usize {
         self.width * self.height
     }
 
-    /// The cell that holds a point, if it lies in the grid; a point that is no number does not.
+    /// Returns the cell that holds a point; `None` outside the grid, and for a point that is not finite.
     pub fn cell_at(&self, point: Point2<f64>) -> Option<Cell> {
         let cell = self.unbounded_cell_at(point);
         let is_place = point.iter().all(|v| v.is_finite());
         self.index(cell).filter(|_| is_place).map(|_| cell)
     }
 
-    /// The cells that meet the box between two corners \[m\], in row-major order.
+    /// Returns the cells that meet the box between two corners \[m\], in row-major order.
     pub fn cells_between(
         &self,
         low: Point2<f64>,
@@ -207,8 +208,8 @@ impl Grid {
         rows.flat_map(move |y| columns.clone().map(move |x| Cell::new(x, y)))
     }
 
-    /// The cell that holds a point, whether it lies in the grid or not; the one farthest out where
-    /// there are no numbers for it, and column or row 0 for what is no number.
+    /// Returns the cell that holds a point, whether it lies in the grid or not. Coordinates
+    /// saturate at the bounds of `i32`; NaN gives column or row 0.
     #[inline]
     pub fn unbounded_cell_at(&self, point: Point2<f64>) -> Cell {
         let scaled = (point - self.lower_left) / self.resolution;
@@ -217,33 +218,33 @@ impl Grid {
         Cell::new(cell(scaled.x), cell(scaled.y))
     }
 
-    /// The centre of a cell \[m\].
+    /// Returns the centre of a cell \[m\].
     #[inline]
     pub fn center(&self, cell: Cell) -> Point2<f64> {
         self.lower_corner(cell) + Vector2::repeat(0.5 * self.resolution)
     }
 
-    /// The lower left corner of a cell \[m\].
+    /// Returns the lower left corner of a cell \[m\].
     #[inline]
     pub fn lower_corner(&self, cell: Cell) -> Point2<f64> {
         self.lower_left + Vector2::new(f64::from(cell.x), f64::from(cell.y)) * self.resolution
     }
 
-    /// The row-major index of a cell, if it lies in the grid.
+    /// Returns the row-major index of a cell; `None` outside the grid.
     #[inline]
     pub fn index(&self, cell: Cell) -> Option<usize> {
         let (x, y) = (usize::try_from(cell.x).ok()?, usize::try_from(cell.y).ok()?);
         (x < self.width && y < self.height).then(|| y * self.width + x)
     }
 
-    /// The cell with a row-major index, whether it lies in the grid or not.
+    /// Returns the cell with a row-major index, whether it lies in the grid or not.
     #[inline]
     pub fn cell(&self, index: usize) -> Cell {
         #[allow(clippy::cast_possible_truncation, reason = "a grid has at most 2e7 cells")]
         Cell::new((index % self.width) as i32, (index / self.width) as i32)
     }
 
-    /// All cells, row by row from the lower left.
+    /// Returns all cells, row by row from the lower left.
     pub fn cells(&self) -> impl Iterator<Item = Cell> + use<> {
         let grid = *self;
         (0..grid.len()).map(move |index| grid.cell(index))

@@ -5,28 +5,27 @@ pub const MIN_BINS: usize = 2;
 /// The largest number of bins.
 pub const MAX_BINS: usize = 64;
 
-/// The floor under every bin's probability before the last normalisation, so that every
-/// stored probability is at least 1e-9, but for one part in a million by normalising and by
-/// rounding.
+/// The floor under every bin's probability before the last normalisation. Every stored probability
+/// is therefore at least 1e-9, but for one part in a million by normalising and by rounding.
 ///
-/// Choice: the paper has no floor. With it every logarithm is finite and evidence can turn
-/// a cell round however sure it was.
+/// Choice: the paper has no floor. With the floor every logarithm is finite, and evidence can
+/// reverse a posterior however sure it was.
 pub const PROBABILITY_FLOOR: f64 = 1e-9;
 
-/// The coverage at which bin `bin` of `bins` stands: `bin / (bins − 1)`.
+/// Returns the coverage at which bin `bin` of `bins` stands: `bin / (bins − 1)`.
 ///
-/// Choice: bins stand **at** coverages and not between them, so that 0, 1 and, with 11 bins,
-/// the 0.2 of the paper's Fig. 1 are exact. Fewer than two bins stand as two do.
+/// Choice: bins stand **at** coverages and not between them, so that 0, 1 and, with 11 bins, the
+/// 0.2 of the paper's Fig. 1 are exact. Fewer than two bins count as two.
 pub fn bin_coverage(bin: usize, bins: usize) -> f64 {
     bin as f64 / (bins.max(2) - 1) as f64
 }
 
-/// The product of a prior and the evidence of one measurement, bin by bin, as in Eq. (8),
-/// before it is normalised. Returns its sum Z.
+/// Writes the product of a prior and the evidence of one measurement to `out`, and returns its sum
+/// Z. The product is taken bin by bin, as in Eq. (8), and is not normalised.
 ///
-/// Every use of a measurement in this project, whether it is integrated or only imagined
-/// for its information gain, is this product: the literal evaluations of both share it, and the
-/// fast ones, which compute the same for many cells side by side, are tested against them.
+/// Every use of a measurement in this project is this product, whether the measurement is integrated or only
+/// imagined for its information gain. The literal evaluations of both uses share it. The fast evaluations
+/// compute the same for many cells side by side, and are tested against the literal ones.
 ///
 /// # Panics
 /// If the three slices differ in length.
@@ -40,7 +39,7 @@ pub fn product(prior: &[f64], evidence: &[f64], out: &mut [f64]) -> f64 {
     sum
 }
 
-/// The entropy of a normalised distribution, Eq. (11), in nats:
+/// Returns the entropy of a normalised distribution, Eq. (11), in nats:
 ///
 /// ```text
 /// H(h) = −Σ p(h_i) · log p(h_i)
@@ -54,7 +53,7 @@ fn entropy(probabilities: &[f64]) -> f64 {
 /// thousands of updates.
 pub(crate) const TIE: f32 = 1e-4;
 
-/// The bin with the largest probability; a tie, to within a relative tolerance of 1e-4, is the lowest coverage.
+/// Returns the bin with the largest probability; a tie, to within a relative tolerance of 1e-4, is the lowest coverage.
 pub fn mode_bin<T: Copy + Into<f64>>(probabilities: &[T]) -> usize {
     let (mut best, mut largest) = (0, f64::NEG_INFINITY);
     for (bin, p) in probabilities.iter().enumerate() {
@@ -73,7 +72,7 @@ pub struct Histogram {
 }
 
 impl Histogram {
-    /// The uniform histogram of `bins` bins: nothing is known.
+    /// Returns the uniform histogram of `bins` bins, in which nothing is known.
     ///
     /// # Panics
     /// Unless `bins` is in [`MIN_BINS`]`..=`[`MAX_BINS`].
@@ -83,8 +82,8 @@ impl Histogram {
         Self { probabilities: vec![p; bins] }
     }
 
-    /// The histogram with bins in proportion to `weights`; `None` if their number is out of
-    /// range, one of them is negative or not finite, or all are 0.
+    /// Returns the histogram with bins in proportion to `weights`; `None` if the number of weights
+    /// is out of range, a weight is negative or not finite, or all weights are 0.
     pub fn from_weights(weights: &[f64]) -> Option<Self> {
         let sum: f64 = weights.iter().sum();
         let valid = (MIN_BINS..=MAX_BINS).contains(&weights.len())
@@ -94,33 +93,33 @@ impl Histogram {
         valid.then(|| Self { probabilities: weights.iter().map(|w| w / sum).collect() })
     }
 
-    /// The probability of each bin; they sum to 1.
+    /// Returns the probability of each bin; the probabilities sum to 1.
     pub fn probabilities(&self) -> &[f64] {
         &self.probabilities
     }
 
-    /// The entropy, Eq. (11) \[nats\]: 0 ≤ H ≤ ln n.
+    /// Returns the entropy, Eq. (11) \[nats\]: 0 ≤ H ≤ ln n.
     pub fn entropy(&self) -> f64 {
         entropy(&self.probabilities)
     }
 
-    /// The most likely coverage; a tie is the lower one.
+    /// Returns the most likely coverage; a tie goes to the lower coverage.
     pub fn mode(&self) -> f64 {
         bin_coverage(mode_bin(&self.probabilities), self.probabilities.len())
     }
 
-    /// The expected coverage.
+    /// Returns the expected coverage.
     pub fn mean(&self) -> f64 {
         let n = self.probabilities.len();
         self.probabilities.iter().enumerate().map(|(k, p)| p * bin_coverage(k, n)).sum()
     }
 
-    /// The central interval of coverages that holds at least `level` of the probability:
-    /// each tail outside of it holds at most `(1 − level)/2`.
+    /// Returns the central interval of coverages that holds at least `level` of the probability:
+    /// each tail outside the interval holds at most `(1 − level)/2`.
     pub fn credible_interval(&self, level: f64) -> (f64, f64) {
         let n = self.probabilities.len();
         let tail = (1.0 - level.clamp(0.0, 1.0)) / 2.0 + 1e-12;
-        // The first bin, walking inwards, at which the probability walked over exceeds a tail.
+        // The first bin, counted inwards, at which the cumulated probability exceeds a tail.
         let first_inside = |bins: &[f64]| {
             let mut sum = 0.0;
             let over = |p: &f64| {

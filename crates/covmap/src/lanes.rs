@@ -1,24 +1,24 @@
 //! Logarithms and exponentials of many numbers at once.
 //!
-//! Loops over arrays of [`LANES`] numbers become vector instructions wherever they are compiled
-//! for a processor that has them. The same operations in the same order everywhere, and
-//! products are added by [`fused`] or not at all: the results are the same to the last bit. The
-//! polynomials are those of the Cephes library's `logf` and `expf`.
+//! Loops over arrays of [`LANES`] numbers become vector instructions wherever they are compiled for
+//! a processor that has them. The operations and their order are the same everywhere, and products
+//! are added only by [`fused`]: the results are the same to the last bit. The polynomials are those
+//! of the Cephes library's `logf` and `expf`.
 
-/// How many numbers are computed side by side.
+/// Number of values that are computed side by side.
 pub const LANES: usize = 16;
 
 /// [`LANES`] numbers.
 pub type Lanes = [f32; LANES];
 
-/// The number of [`Lanes`] that are computed together where they can be: a long chain of operations on
-/// one of them would leave the processor waiting.
+/// Number of [`Lanes`] that are computed together where possible: a long chain of operations on a
+/// single one would leave the processor waiting.
 pub const TOGETHER: usize = 4;
 
-/// [`Lanes`] that are computed together.
+/// [`TOGETHER`] [`Lanes`].
 pub type Wide = [f32; LANES * TOGETHER];
 
-/// The numbers of all [`Lanes`].
+/// Joins [`Lanes`] into one array.
 #[inline(always)]
 pub fn flat(rows: &[Lanes; TOGETHER]) -> Wide {
     let mut out = [0.0; LANES * TOGETHER];
@@ -28,7 +28,7 @@ pub fn flat(rows: &[Lanes; TOGETHER]) -> Wide {
     out
 }
 
-/// The [`Lanes`] of all numbers.
+/// Splits one array into [`Lanes`].
 #[inline(always)]
 pub fn rows(flat: &Wide) -> [Lanes; TOGETHER] {
     let mut out = [[0.0; LANES]; TOGETHER];
@@ -38,17 +38,17 @@ pub fn rows(flat: &Wide) -> [Lanes; TOGETHER] {
     out
 }
 
-/// a·b + c, rounded once.
+/// Returns a·b + c, rounded once.
 ///
-/// So IEEE 754 has it, and so do all processors: those that cannot do it at once do it slowly.
-/// Where it is one instruction, decisions take about a third less time with it.
+/// IEEE 754 defines this result, so all processors agree on it; those without the instruction are
+/// slow at it. With the instruction, decisions take about a third less time.
 #[inline(always)]
 #[allow(clippy::disallowed_methods, reason = "the one place")]
 pub fn fused(a: f32, b: f32, c: f32) -> f32 {
     a.mul_add(b, c)
 }
 
-/// The natural logarithms of positive, normal numbers, each to within 1e-7·(1 + |ln x|).
+/// Returns the natural logarithms of positive, normal numbers, each to within 1e-7·(1 + |ln x|).
 ///
 /// The mantissa is brought to m in [√½, √2); then `ln x = e·ln 2 + ln(1 + (m − 1))`, with a
 /// polynomial of degree 9, and ln 2 in two parts.
@@ -75,14 +75,14 @@ pub fn ln<const N: usize>(x: &[f32; N]) -> [f32; N] {
     scaled_plus(&exponent, 0.693_359_4, &add(&z, &small))
 }
 
-/// The exponentials of numbers of at most 88, each to within 2e-7 of itself; below −87 that
-/// of −87, which is 1.6e-38.
+/// Returns the exponentials of numbers of at most 88, each to within 2e-7 of itself. Below −87 the
+/// result is that of −87, which is 1.6e-38.
 ///
 /// With n the whole number nearest to x/ln 2, `exp x = 2^n · exp(x − n·ln 2)`, with a
 /// polynomial of degree 7, and ln 2 in two parts.
 #[inline(always)]
 pub fn exp<const N: usize>(x: &[f32; N]) -> [f32; N] {
-    /// Added to a number below 2^22 it leaves a whole number in the mantissa's last bits.
+    /// Added to a number below 2^22, this leaves a whole number in the mantissa's last bits.
     const TO_WHOLE: f32 = 12_582_912.0;
     let x = map(x, |x| if x > -87.0 { x } else { -87.0 });
     let shifted = map(&x, |x| fused(x, std::f32::consts::LOG2_E, TO_WHOLE));
@@ -100,7 +100,7 @@ pub fn exp<const N: usize>(x: &[f32; N]) -> [f32; N] {
     multiply(&mantissa, &power)
 }
 
-/// Adds a·b, lane by lane.
+/// Adds a·b to `sum`, lane by lane.
 #[inline(always)]
 pub fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
     for lane in 0..LANES {
@@ -108,7 +108,7 @@ pub fn add_product(sum: &mut Lanes, a: &Lanes, b: &Lanes) {
     }
 }
 
-/// Adds the same multiple of all.
+/// Adds `factor`·a to `sum`, lane by lane.
 #[inline(always)]
 pub fn add_scaled(sum: &mut Lanes, a: &Lanes, factor: f32) {
     for lane in 0..LANES {
@@ -116,7 +116,7 @@ pub fn add_scaled(sum: &mut Lanes, a: &Lanes, factor: f32) {
     }
 }
 
-/// A function of each number.
+/// Applies a function to each number.
 #[inline(always)]
 pub fn map<T: Copy, U: Copy + Default, const N: usize>(x: &[T; N], f: impl Fn(T) -> U) -> [U; N] {
     let mut out = [U::default(); N];

@@ -1,9 +1,9 @@
-//! Coverage maps: what the robot believes about *how much* of each cell is covered.
+//! Coverage maps: the robot's belief about *how much* of each cell is covered.
 //!
 //! Section 2 of Stachniss & Burgard (2003), equation (11). The principal type is
 //! [`CoverageMap`]: a [`Grid`] of cells with a posterior over the coverage of each.
 //!
-//! This crate knows nothing of sensors, models and robots: it multiplies evidence.
+//! This crate knows nothing of sensors, models or robots: it multiplies evidence.
 //!
 //! # Units
 //! Metres, nats; coverage in [0, 1], 0 for an empty cell and 1 for a full one.

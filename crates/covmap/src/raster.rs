@@ -10,7 +10,7 @@ pub struct Raster<T> {
 }
 
 impl<T> Raster<T> {
-    /// A raster in which every cell has the same value.
+    /// Creates a raster in which every cell has the same value.
     pub fn filled(grid: Grid, value: T) -> Self
     where
         T: Clone,
@@ -18,47 +18,47 @@ impl<T> Raster<T> {
         Self { grid, values: vec![value; grid.len()] }
     }
 
-    /// A raster with the value that `f` gives to each cell.
+    /// Creates a raster with the value that `f` gives to each cell.
     pub fn from_fn(grid: Grid, f: impl FnMut(Cell) -> T) -> Self {
         Self { grid, values: grid.cells().map(f).collect() }
     }
 
-    /// A raster of values in row-major order; `None` if there is not one for each cell.
+    /// Creates a raster of values in row-major order; `None` if there is not one for each cell.
     pub fn from_values(grid: Grid, values: Vec<T>) -> Option<Self> {
         (values.len() == grid.len()).then_some(Self { grid, values })
     }
 
-    /// The grid whose cells have these values.
+    /// Returns the grid whose cells have these values.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// The value of a cell; `None` outside the grid.
+    /// Returns the value of a cell; `None` outside the grid.
     pub fn get(&self, cell: Cell) -> Option<&T> {
         self.grid.index(cell).map(|i| &self.values[i])
     }
 
-    /// The value of a cell, to be changed; `None` outside the grid.
+    /// Returns the value of a cell for changing; `None` outside the grid.
     pub fn get_mut(&mut self, cell: Cell) -> Option<&mut T> {
         self.grid.index(cell).map(|i| &mut self.values[i])
     }
 
-    /// All values in row-major order.
+    /// Returns all values in row-major order.
     pub fn values(&self) -> &[T] {
         &self.values
     }
 
-    /// All values in row-major order, to be changed.
+    /// Returns all values in row-major order for changing.
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.values
     }
 
-    /// Every cell with its value, in row-major order.
+    /// Returns every cell with its value, in row-major order.
     pub fn iter(&self) -> impl Iterator<Item = (Cell, &T)> {
         self.grid.cells().zip(&self.values)
     }
 
-    /// The raster of `f(value)` of each cell.
+    /// Returns the raster of `f(value)` of each cell.
     pub fn map<U>(&self, f: impl FnMut(&T) -> U) -> Raster<U> {
         Raster { grid: self.grid, values: self.values.iter().map(f).collect() }
     }
@@ -66,7 +66,7 @@ impl<T> Raster<T> {
 
 impl<T> std::ops::Index<usize> for Raster<T> {
     type Output = T;
-    /// The value of the cell with a row-major index.
+    /// Returns the value of the cell with a row-major index.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -76,7 +76,7 @@ impl<T> std::ops::Index<usize> for Raster<T> {
 }
 
 impl<T> std::ops::IndexMut<usize> for Raster<T> {
-    /// The same, to be changed.
+    /// Returns the value of the cell with a row-major index for changing.
     ///
     /// # Panics
     /// If there is no such cell.

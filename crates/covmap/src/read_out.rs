@@ -1,4 +1,4 @@
-//! What a map's posteriors have meant before: a calibrated reading of them.
+//! Calibrated reading of a map's posteriors, by the meaning that such posteriors had before.
 
 use crate::coverage_map::Evidence;
 use crate::histogram::{MAX_BINS, MIN_BINS, PROBABILITY_FLOOR};
@@ -8,24 +8,23 @@ use serde::{Deserialize, Serialize};
 /// η: the share of every posterior that is spread evenly over its bins before it is read.
 pub const READ_OUT_FLOOR: f64 = 1e-6;
 
-/// No number of a read-out is larger: beyond, all mass would be in one bin anyway.
+/// Largest magnitude of a number in a read-out: beyond, all mass would be in one bin anyway.
 const LARGEST: f64 = 1000.0;
 
 /// A calibrated reading of posteriors, which keeps their shape: for every bin j a weighted sum of
-/// what the posterior says of all bins, as logarithms.
+/// the logarithms of the posterior in all bins.
 ///
 /// ```text
 /// p'_j ∝ exp(b_j + Σ_k W_jk · log p̃_k)         p̃ = (1 − η)·p + η/n,   η = 1e-6
 /// ```
 ///
-/// b is `bias`, W is `weights`, a row for each bin j. With W = I and b = 0 it is p, but for η;
-/// with W = t·I a posterior that is too sure is read as a flatter one. Evidence adds up in
-/// logarithms, Eq. (8), so that a sum of logarithms can take back what was counted twice,
-/// and tell apart a mode of ½ that comes from readings at the end of a beam from one that comes
-/// from readings that contradict each other. It is the model of a multinomial logistic
-/// regression, whose likelihood has one maximum.
+/// b is `bias`, and W is `weights`, a row for each bin j. With W = I and b = 0 the reading is p, but for η;
+/// with W = t·I a posterior that is too sure is read as a flatter one. Evidence adds up in logarithms,
+/// Eq. (8). A sum of logarithms can therefore take back evidence that was counted twice, and can tell a mode
+/// of ½ from readings at the end of a beam from a mode of ½ from readings that contradict each other. The
+/// model is that of a multinomial logistic regression, whose likelihood has one maximum.
 ///
-/// The belief stays as it is: what is read is for who looks at the map.
+/// The belief stays as it is: the reading is for the user who looks at the map.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Plain", into = "Plain")]
 pub struct ReadOut {
@@ -41,39 +40,39 @@ struct Plain {
     weights: Vec<Vec<f64>>,
 }
 
-/// Why numbers are no read-out, or none for a map.
+/// Reason why numbers are no read-out, or why a read-out does not fit a map.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ReadOutError {
     /// The number of bins is out of range.
-    #[error("bias: {0} numbers; there is one for each bin of a map, {MIN_BINS} to {MAX_BINS}")]
+    #[error("bias: {0} numbers; there must be one for each bin of a map, {MIN_BINS} to {MAX_BINS}")]
     Bins(usize),
-    /// There is not a row for each bin.
+    /// The number of rows is not the number of bins.
     #[error("weights: {rows} rows for {bins} bins; there must be one row for each number of bias")]
     Rows {
-        /// How many there are.
+        /// Number of rows.
         rows: usize,
-        /// How many there should be.
+        /// Number of bins.
         bins: usize,
     },
-    /// A row has not a number for each bin.
+    /// A row does not have one number for each bin.
     #[error("weights[{row}]: {numbers} numbers for {bins} bins; there must be one for each")]
     Row {
-        /// Which row, from 0.
+        /// Index of the row, from 0.
         row: usize,
-        /// How many numbers it has.
+        /// Length of the row.
         numbers: usize,
-        /// How many it should have.
+        /// Number of bins.
         bins: usize,
     },
     /// A number is out of range.
     #[error("{place}: {} must lie in [−{LARGEST}, {LARGEST}]", short(value))]
     Number {
-        /// Which number.
+        /// Place of the number.
         place: String,
-        /// Its value.
+        /// Value of the number.
         value: f64,
     },
-    /// The map has other bins.
+    /// The map has another number of bins.
     #[error(
         "the read-out is for maps of {bins} bins, and this one has {map}; fit one to its model"
     )]
@@ -86,11 +85,12 @@ pub enum ReadOutError {
 }
 
 impl ReadOut {
-    /// The read-out with these numbers: `bias` has one for each bin, `weights` a row of as many
-    /// for each bin.
+    /// Creates the read-out with these numbers: `bias` has one for each bin, and `weights` one row
+    /// for each bin with one number for each bin.
     ///
     /// # Errors
-    /// If they are not as many, or one is not finite or out of \[−1000, 1000\].
+    /// If the number of bins is out of range, a length differs from it, or a number is not finite
+    /// or outside \[−1000, 1000\].
     pub fn new(bias: Vec<f64>, weights: Vec<Vec<f64>>) -> Result<Self, ReadOutError> {
         let bins = bias.len();
         if !(MIN_BINS..=MAX_BINS).contains(&bins) {
@@ -115,7 +115,7 @@ impl ReadOut {
         Ok(Self { bias, weights })
     }
 
-    /// The one that reads posteriors as they are, but for η.
+    /// Returns the read-out that reads posteriors as they are, but for η.
     ///
     /// # Panics
     /// Unless `bins` is in [`MIN_BINS`]`..=`[`MAX_BINS`].
@@ -125,15 +125,15 @@ impl ReadOut {
         Self { bias: vec![0.0; bins], weights: (0..bins).map(row).collect() }
     }
 
-    /// The number of bins.
+    /// Returns the number of bins.
     pub fn bins(&self) -> usize {
         self.bias.len()
     }
 
-    /// log p̃ of every bin: what the weights weigh.
+    /// Writes log p̃ of every bin to `out`: the numbers that the weights multiply.
     ///
     /// # Panics
-    /// This and [`Self::read`]: if the slices differ in length.
+    /// This and [`Self::read`] panic if the slices differ in length.
     pub fn clues(posterior: &[f64], out: &mut [f64]) {
         assert_eq!(posterior.len(), out.len(), "a place for each bin");
         let even = READ_OUT_FLOOR / posterior.len() as f64;
@@ -142,7 +142,7 @@ impl ReadOut {
         }
     }
 
-    /// The calibrated posterior in place of a map's own.
+    /// Writes the calibrated reading of a map's posterior to `out`.
     pub fn read(&self, posterior: &[f64], out: &mut [f64]) {
         let mut clues = [0.0; MAX_BINS];
         let clues = &mut clues[..self.bins()];
@@ -159,11 +159,11 @@ impl ReadOut {
 }
 
 impl CoverageMap {
-    /// The map as a read-out reads it: every cell that was measured. What nobody measured stays
-    /// unknown, and what the body pinned stays pinned.
+    /// Returns the map as a read-out reads it. Only measured cells are read: unknown cells stay
+    /// unknown, and pinned cells stay pinned.
     ///
     /// # Errors
-    /// If the read-out is for other bins.
+    /// If the read-out is for another number of bins.
     pub fn read_by(&self, read_out: &ReadOut) -> Result<Self, ReadOutError> {
         let bins = self.bins;
         if read_out.bins() != bins {
@@ -228,7 +228,7 @@ mod tests {
         let half = ReadOut::new(vec![0.0, libm::log(2.0)], vec![vec![0.5, 0.0], vec![0.0, 0.5]]);
         let p = read(&half.unwrap(), &[0.8, 0.2]);
         assert!((p[0] - 0.5).abs() < 1e-4, "{p:?}");
-        // Rows that are exchanged exchange the bins.
+        // Exchanged rows exchange the bins.
         let other = ReadOut::new(vec![0.0; 2], vec![vec![0.0, 1.0], vec![1.0, 0.0]]).unwrap();
         assert!((read(&other, &[0.8, 0.2])[1] - 0.8).abs() < 1e-4);
     }

@@ -1,10 +1,10 @@
-//! Which cells are scored: of what is solid only the first layer, which a sensor can know.
+//! The cells that are scored: of the solid ones only the first layer, which a sensor can measure.
 
 use crate::{Cell, Class, Raster};
 
-/// Whether a cell is scored, by the true coverage: one that is not solid, and of the solid ones
-/// the first layer, those with a cell that is not solid among their eight neighbours. What is
-/// deeper nobody can measure. Outside of the raster everything is solid.
+/// Returns whether a cell is scored, by the true coverage. All cells that are not solid are scored,
+/// and of the solid cells the first layer: those with a cell that is not solid among their eight
+/// neighbours. No sensor can measure deeper cells. Outside the raster everything is solid.
 pub fn is_scored(coverage: &Raster<f64>, cell: Cell) -> bool {
     let is_solid =
         |cell: Cell| coverage.get(cell).is_none_or(|coverage| Class::of(*coverage) == Class::Solid);
@@ -20,7 +20,7 @@ mod tests {
 
     #[test]
     fn the_first_layer_of_solid_cells_is_one_cell_thick_and_has_corners() {
-        // A room of 2 × 1 cells, of which one is half covered, in a grid of 7 × 5.
+        // A room of 2 × 1 cells, one of them half covered, in a grid of 7 × 5.
         let grid = Grid::new(Point2::origin(), 0.1, 7, 5).unwrap();
         let coverage = Raster::from_fn(grid, |cell| match (cell.x, cell.y) {
             (2, 2) => 0.0,

@@ -3,8 +3,8 @@
 /// Numbers up to this length are written digit by digit.
 const LONGEST: usize = 12;
 
-/// A number for a sentence, such as that of an error: with all of its digits, and with an exponent
-/// where zeros would fill the line.
+/// Formats a number for a sentence, such as an error message: with all of its digits, and with an
+/// exponent where zeros would fill the line.
 #[must_use]
 pub fn short(number: &f64) -> String {
     let (plain, exponent) = (number.to_string(), format!("{number:e}"));

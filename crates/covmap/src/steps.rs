@@ -1,4 +1,4 @@
-//! Where a body can go from cell to cell.
+//! Steps that a body can take from cell to cell.
 
 use crate::{Cell, Grid, Raster};
 
@@ -7,16 +7,15 @@ use crate::{Cell, Grid, Raster};
 pub const STEPS: [(i32, i32); 8] =
     [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1)];
 
-/// The bit of a cell near which a step is an exception.
+/// The bit of a cell near which a step was opened or closed.
 const EXCEPTION: u16 = 1 << 8;
 
-/// Which steps a body can take.
+/// The steps that a body can take.
 ///
-/// **The one rule**: a body goes from the centre of a cell to that of one of its eight
-/// neighbours in a straight line, if it touches nothing on the way. What it would touch is
-/// for others to say, of what they know: the world of its walls, the planner of its belief
-/// and of where the body went before. All that asks where a body can go asks `Steps`: the
-/// planner's ways and passages, and the truth that a run is compared with.
+/// **The one rule**: a body goes from the centre of a cell to that of one of its eight neighbours in a
+/// straight line, if it touches nothing on the way. The caller says what the body would touch: the world from
+/// its walls, the planner from its belief and from the body's path so far. `Steps` alone answers where a body
+/// can go: for the planner's ways and passages, and for the truth that a run is compared with.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Steps {
     grid: Grid,
@@ -25,9 +24,10 @@ pub struct Steps {
 }
 
 impl Steps {
-    /// All steps that end in a cell on which the body can stand, given by its row-major index.
+    /// Returns all steps that end in a cell on which the body can stand. `can_stand` takes the
+    /// cell's row-major index.
     ///
-    /// A step may begin where the body cannot stand: a robot may find itself there.
+    /// A step may begin in a cell on which the body cannot stand: a robot may find itself there.
     pub fn between(grid: &Grid, can_stand: impl Fn(usize) -> bool) -> Self {
         let (width, bordered) = (grid.width(), grid.width() + 2);
         let mut stands = vec![0u16; bordered * (grid.height() + 2)];
@@ -56,29 +56,28 @@ impl Steps {
         Self { grid: *grid, of }
     }
 
-    /// The grid.
+    /// Returns the grid.
     pub fn grid(&self) -> &Grid {
         &self.grid
     }
 
-    /// The steps that lead on from the cell with a row-major index: bit k for `STEPS[k]`.
+    /// Returns the steps that lead on from the cell with a row-major index: bit k for `STEPS[k]`.
     ///
     /// # Panics
-    /// This and [`is_regular`](Self::is_regular): if there is no such cell.
+    /// This and [`is_regular`](Self::is_regular) panic if there is no such cell.
     pub fn from(&self, index: usize) -> u8 {
         let [steps, _] = self.of[index].to_le_bytes();
         steps
     }
 
-    /// Whether all steps among a cell and its neighbours are those
-    /// [`between`](Self::between) the cells on which the body can stand: none was opened or
-    /// closed.
+    /// Returns whether all steps among a cell and its neighbours are those
+    /// [`between`](Self::between) the cells on which the body can stand: none was opened or closed.
     pub fn is_regular(&self, index: usize) -> bool {
         self.of[index] & EXCEPTION == 0
     }
 
-    /// For each cell, row by row, what [`from`](Self::from) says, and 2⁸ where it is not
-    /// [regular](Self::is_regular).
+    /// Returns for each cell, row by row, the bits of [`from`](Self::from), and 2⁸ where the cell
+    /// is not [regular](Self::is_regular).
     pub fn masks(&self) -> &[u16] {
         &self.of
     }
@@ -107,7 +106,7 @@ impl Steps {
         }
     }
 
-    /// The cells to which steps lead on from the cell with a row-major index.
+    /// Returns the cells to which steps lead on from the cell with a row-major index.
     pub fn neighbours(&self, index: usize) -> impl Iterator<Item = usize> + use<> {
         let (grid, steps) = (self.grid, self.from(index));
         (0..8)
@@ -115,10 +114,10 @@ impl Steps {
             .filter_map(move |step| neighbour(&grid, index, step))
     }
 
-    /// All cells that the body reaches from some, and those.
+    /// Returns all cells that the body reaches from the cells `first`, and those cells themselves.
     ///
     /// # Panics
-    /// If one of them does not exist.
+    /// If one of the cells `first` does not exist.
     pub fn reached(&self, first: impl IntoIterator<Item = usize>) -> Raster<bool> {
         let mut reached = Raster::filled(self.grid, false);
         for index in first {
@@ -127,8 +126,8 @@ impl Steps {
         reached
     }
 
-    /// The regions of those cells that are members, in each of which the body gets from any
-    /// cell to any other without leaving it.
+    /// Returns the regions of the member cells. In each region the body gets from any cell to any
+    /// other without leaving the region.
     pub fn regions(&self, is_member: impl Fn(usize) -> bool) -> Vec<Vec<usize>> {
         let mut seen =
             Raster::from_fn(self.grid, |cell| !self.grid.index(cell).is_some_and(&is_member));
@@ -142,7 +141,7 @@ impl Steps {
         regions
     }
 
-    /// Marks what is reached from a cell over cells that are not marked yet, and returns it.
+    /// Marks the cells that the body reaches from a cell over unmarked cells, and returns them.
     fn spread(&self, first: usize, marked: &mut Raster<bool>) -> Vec<usize> {
         if std::mem::replace(&mut marked[first], true) {
             return Vec::new();
@@ -161,18 +160,18 @@ impl Steps {
     }
 }
 
-/// The step back.
+/// Returns the step back.
 pub fn opposite(step: usize) -> usize {
     (step + 4) % 8
 }
 
-/// The cell to which a step leads, by row-major indices; `None` if it leads out of the grid.
+/// Returns the cell to which a step leads, by row-major indices; `None` if it leads out of the grid.
 pub fn neighbour(grid: &Grid, index: usize, step: usize) -> Option<usize> {
     let (dx, dy) = STEPS[step % 8];
     grid.index(grid.cell(index).offset(dx, dy))
 }
 
-/// The step from one cell to another; `None` if they are no neighbours.
+/// Returns the step from one cell to another; `None` if they are not neighbours.
 pub fn step_between(from: Cell, to: Cell) -> Option<usize> {
     let (dx, dy) = (to.x.checked_sub(from.x)?, to.y.checked_sub(from.y)?);
     STEPS.iter().position(|step| *step == (dx, dy))
@@ -183,7 +182,7 @@ mod tests {
     use super::*;
     use nalgebra::Point2;
 
-    /// Steps over the cells of a picture that are not `#`, first row on top.
+    /// Returns the steps over the cells of a picture that are not `#`, first row on top.
     fn steps(picture: &str) -> Steps {
         let rows: Vec<&[u8]> = picture.split_whitespace().map(str::as_bytes).rev().collect();
         let grid = Grid::new(Point2::origin(), 1.0, rows[0].len(), rows.len()).unwrap();

@@ -91,7 +91,7 @@ fn a_posterior_is_the_product_of_all_readings() {
 #[test]
 fn many_cells_side_by_side_have_the_same_posteriors() {
     let (mut map, cell, other) = (empty(3), Cell::new(3, 2), Cell::new(1, 0));
-    // The cell is in the last lane; in the first another one, with coverages the other way round.
+    // The cell is in the last lane; the first lane has another cell, with coverages the other way round.
     let (first, last) = (0, LANES - 1);
     let mut cells = [EvidenceBlock::NO_CELL; LANES];
     (cells[first], cells[last]) = (1, 11);
@@ -122,7 +122,7 @@ fn a_tie_is_the_lower_coverage_one_by_one_and_side_by_side() {
     map.multiply(Cell::new(0, 0), &[0.1, 0.4, 0.4, 0.1]);
     assert_eq!(map.mode(Cell::new(0, 0)), 1.0 / 3.0);
     let mut block = EvidenceBlock::new(4);
-    // Beside the tie: a bin that is larger than the one before it is not the largest yet.
+    // Beside the tie: a bin larger than the one before it need not be the largest.
     for (bin, weights) in [[0.25, 0.5], [0.5, 0.1], [0.5, 0.3], [0.5, 0.1]].iter().enumerate() {
         block.weights()[bin / TOGETHER][bin % TOGETHER][..2].copy_from_slice(weights);
     }

@@ -1,4 +1,4 @@
-//! What the docs name is there: items, files, anchors, and every shipped file in the guide.
+//! The docs name only existing items, files and anchors, and the guide names every shipped file.
 
 pub(crate) mod source;
 
@@ -7,7 +7,7 @@ use source::{Found, crates, find, paths_of_tree};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The README and all pages of `docs/`, by their paths in the repository, with their texts.
+/// Returns the README and all pages of `docs/`, by their paths in the repository, with their texts.
 fn pages() -> Vec<(String, String)> {
     let page = |path: &Path| {
         let name = path.strip_prefix(root()).unwrap().to_str().unwrap().to_owned();
@@ -17,14 +17,14 @@ fn pages() -> Vec<(String, String)> {
     docs.chain([root().join("README.md")]).map(|path| page(&path)).collect()
 }
 
-/// A path that a page names, and whether it is set in italics.
+/// A path that a page names, with its typeface.
 #[derive(Debug, Clone, PartialEq)]
 struct Named {
     path: Vec<String>,
     italic: bool,
 }
 
-/// All paths of a text that begin with a crate: `covmap_plan::Strategy::{Cl, Ig}` is two.
+/// Returns all paths in a text that begin with a crate: `covmap_plan::Strategy::{Cl, Ig}` is two.
 fn named(text: &str) -> Vec<Named> {
     let mut found = Vec::new();
     for (at, _) in text.match_indices("covmap") {
@@ -40,7 +40,7 @@ fn named(text: &str) -> Vec<Named> {
     found
 }
 
-/// The path with which a text begins, as far as it is one: `a::b::{c, d}`.
+/// Returns the path at the beginning of a text: `a::b::{c, d}`.
 fn path_at(text: &str) -> &str {
     let is_name = |c: char| c.is_alphanumeric() || c == '_';
     let mut end = text.find(|c| !is_name(c)).unwrap_or(text.len());
@@ -57,7 +57,7 @@ fn path_at(text: &str) -> &str {
     &text[..end]
 }
 
-/// What stands between single backticks, outside of blocks of code.
+/// Returns the texts between single backticks, outside of blocks of code.
 fn spans(text: &str) -> Vec<&str> {
     let outside = text.split("```").step_by(2);
     outside.flat_map(|part| part.split('`').skip(1).step_by(2)).collect()
@@ -67,7 +67,7 @@ fn parts(path: &str) -> Vec<String> {
     path.split("::").map(str::to_owned).collect()
 }
 
-/// The complaints about all pages, if there are any, in one message.
+/// Fails with the complaints about all pages in one message, if there are any.
 #[track_caller]
 fn expect_none(complaints: &[String]) {
     assert!(complaints.is_empty(), "\n{}", complaints.join("\n"));
@@ -82,7 +82,7 @@ fn every_item_that_the_docs_name_exists() {
             count += 1;
             match find(&path) {
                 Err(error) => complaints.push(format!("{page}: {error}")),
-                // The index says of private items that they are in italics.
+                // The index sets private items in italics.
                 Ok(found) if page == "docs/paper.md" && italic != (found == Found::Private) => {
                     complaints.push(format!("{page}: {} is {found:?}", path.join("::")));
                 }
@@ -94,7 +94,7 @@ fn every_item_that_the_docs_name_exists() {
     assert!(count > 150, "only {count} items were found to be named");
 }
 
-/// Types of others that the docs name.
+/// Foreign types that the docs name.
 const FOREIGN: [&str; 1] = ["ControlFlow"];
 
 #[test]
@@ -136,7 +136,7 @@ fn every_test_that_is_named_exists() {
     let code: String = sources.map(|file| fs::read_to_string(file).unwrap()).collect();
     let mut complaints = Vec::new();
     for (page, text) in pages() {
-        // Functions that are called by a sentence are tests.
+        // A function whose name is a sentence is a test.
         let is_name = |c: char| c.is_lowercase() || c.is_ascii_digit() || c == '_';
         let sentences = spans(&text).into_iter().filter(|span| span.matches('_').count() > 4);
         for name in sentences.filter(|span| span.chars().all(is_name)) {
@@ -167,7 +167,7 @@ fn links_lead_to_files_and_headings() {
     expect_none(&complaints);
 }
 
-/// The anchors of a page's headings, as GitHub makes them.
+/// Returns the anchors of a page's headings, as GitHub makes them.
 fn anchors(page: &PathBuf) -> Vec<String> {
     let text = fs::read_to_string(page).unwrap();
     let headings = text.lines().filter(|line| line.starts_with('#'));

@@ -1,25 +1,25 @@
-//! The items of a crate, read from its sources as rustfmt leaves them: what belongs to a module
-//! begins at the margin, and what belongs to an item is indented by four.
+//! The items of a crate, read from sources in rustfmt's layout: an item of a module begins at the
+//! margin, and its members are indented by four.
 
 use crate::root;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// An item at the margin of a file, with the lines that belong to it.
+/// An item at the margin of a file, with its lines.
 #[derive(Debug, Clone)]
 struct Item {
     public: bool,
     kind: String,
-    /// Of an `impl` the type.
+    /// The name; for an `impl`, that of the type.
     name: String,
     body: Vec<String>,
 }
 
-/// What a file declares and imports.
+/// The declarations and imports of a file.
 #[derive(Debug, Clone, Default)]
 struct Source {
     items: Vec<Item>,
-    /// Paths that are imported, the name last, and whether they are `pub`.
+    /// The imported paths, each ending with the name, and whether the import is `pub`.
     uses: Vec<(bool, Vec<String>)>,
 }
 
@@ -30,7 +30,7 @@ struct Module {
     folder: PathBuf,
 }
 
-/// Whether a path leads to an item, and whether users of the crate may name it.
+/// Whether users of the crate may name an item.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Found {
     Public,
@@ -58,7 +58,7 @@ pub(super) fn find(path: &[String]) -> Result<Found, String> {
     Ok(if public { Found::Public } else { Found::Private })
 }
 
-/// All crates of the library, by the names that paths begin with.
+/// Returns all crates of the library, by their names in paths.
 pub(super) fn crates() -> Vec<String> {
     let entries = fs::read_dir(root().join("crates")).unwrap().map(|entry| entry.unwrap());
     let folders = entries.filter(|entry| entry.path().is_dir());
@@ -77,8 +77,8 @@ impl Module {
             .or_else(|| Self::read(&folder.join("mod.rs"), &folder))
     }
 
-    /// Follows a path from this module; the part that is not there is the error. `exported` paths
-    /// go through private modules to public items.
+    /// Follows a path from this module; the error is the missing part. `exported` paths go through
+    /// private modules to public items.
     fn walk(&self, src: &Path, path: &[String], exported: bool) -> Result<(), String> {
         let [name, rest @ ..] = path else { return Ok(()) };
         let mut declared = self.source.items.iter().filter(|item| item.name == *name);
@@ -110,7 +110,8 @@ impl Module {
     }
 }
 
-/// Whether a type has a field, a variant, a function or a constant of a name, wherever in its crate.
+/// Returns whether a type has a field, variant, function or constant of this name, anywhere in its
+/// crate.
 fn has_member(src: &Path, item: &Item, name: &str, public: bool) -> bool {
     let of_impls = |file: &PathBuf| {
         let items = parse(&fs::read_to_string(file).unwrap()).items.into_iter();
@@ -130,7 +131,7 @@ fn has_member(src: &Path, item: &Item, name: &str, public: bool) -> bool {
     };
     declares(&item.body, open)
         || crate::rust_files(src).iter().flat_map(of_impls).any(|block| {
-            // What a trait asks for is as public as the trait.
+            // The items of a trait's `impl` are as public as the trait.
             declares(&block.body, block.public)
         })
 }
@@ -197,7 +198,7 @@ fn parse(text: &str) -> Source {
     source
 }
 
-/// The type of `impl<T> Trait for Type<T> {`, and whether there is a trait.
+/// Returns the type of `impl<T> Trait for Type<T> {`, and whether there is a trait.
 fn implemented(header: &str) -> (String, bool) {
     let header = header.trim_end_matches('{').split(" where ").next().unwrap();
     let (kind, of_trait) = match header.rsplit_once(" for ") {
@@ -209,7 +210,7 @@ fn implemented(header: &str) -> (String, bool) {
     (kind.rsplit("::").next().unwrap().to_owned(), of_trait)
 }
 
-/// All paths of `a::{b, c::{d, e}}`. What is renamed is not followed.
+/// Returns all paths of `a::{b, c::{d, e}}`; renamed imports are not followed.
 pub(crate) fn paths_of_tree(tree: &str) -> Vec<Vec<String>> {
     let Some(at) = tree.find('{') else {
         let path = parts(tree);
@@ -225,7 +226,7 @@ fn parts(path: &str) -> Vec<String> {
     path.split("::").map(|part| part.trim().to_owned()).filter(|part| !part.is_empty()).collect()
 }
 
-/// What the commas outside of all braces part.
+/// Splits a text at the commas outside of all braces.
 fn branches(text: &str) -> Vec<&str> {
     let (mut depth, mut from, mut found) = (0, 0, Vec::new());
     for (at, letter) in text.char_indices() {

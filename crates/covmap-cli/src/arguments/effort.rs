@@ -1,9 +1,9 @@
-//! How much is measured, as it is typed.
+//! The effort of a run, as an argument.
 
 use clap::ValueEnum;
 use covmap_plan::Effort;
 
-/// How much is measured.
+/// The effort of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum EffortName {
     /// The floor plan, with two thirds of the scans of standard

@@ -1,4 +1,4 @@
-//! How the map is read.
+//! The read-out of the map.
 
 use clap::Args;
 use covmap_lab::{LabError, Reader};
@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Clone, Args)]
 pub(crate) struct ReadOutFile {
     /// Read the map through the read-out that `fit` wrote as read_out.ron: coverage.png,
-    /// entropy.png, map.pgm and all scores are of the calibrated posteriors. belief.bin, and what
-    /// the planner believes, stay as they are [default: as the map has it]
+    /// entropy.png, map.pgm and all scores then show the calibrated posteriors. belief.bin and the
+    /// planner's belief stay as they are [default: no read-out]
     #[arg(long, value_name = "FILE")]
     pub(crate) read_out: Option<PathBuf>,
 }
@@ -20,7 +20,7 @@ impl ReadOutFile {
         Reader::load(self.read_out.as_deref(), bins)
     }
 
-    /// The file, if there is one.
+    /// Returns the path of the file, if any.
     pub(crate) fn path(&self) -> Option<&Path> {
         self.read_out.as_deref()
     }

@@ -1,4 +1,4 @@
-//! Parameters that are set one by one.
+//! Parameters of the configuration that are set one by one.
 
 use crate::names;
 use anyhow::{Result, anyhow};
@@ -10,7 +10,7 @@ use serde_json::Value;
 #[derive(Debug, Clone, Args)]
 pub(crate) struct Settings {
     /// Set one parameter of the configuration by its path, as in planner.entropy_threshold=0.5 or
-    /// planner.body_evidence=Off; again for another one [default: as the configuration says]
+    /// planner.body_evidence=Off; repeat it for more parameters [default: from the configuration]
     #[arg(long = "set", value_name = "PATH=VALUE", value_parser = setting)]
     set: Vec<Setting>,
 }
@@ -23,23 +23,23 @@ struct Setting {
     typed: String,
 }
 
-/// A value is JSON; what is none is a word.
+/// Parses one setting; its value is JSON, or else a word.
 fn setting(text: &str) -> Result<Setting, String> {
-    let (path, value) = text.split_once('=').ok_or("it is PATH=VALUE, as in model.bins=21")?;
+    let (path, value) = text.split_once('=').ok_or("expected PATH=VALUE, as in model.bins=21")?;
     let value = serde_json::from_str(value).unwrap_or_else(|_| Value::String(value.to_owned()));
     Ok(Setting { path: path.to_owned(), value, typed: text.to_owned() })
 }
 
 impl Settings {
-    /// The configuration with these parameters. Whether they are in their intervals is checked with all
-    /// others.
+    /// Returns the configuration with these parameters. The later check of the configuration covers
+    /// their intervals.
     pub(crate) fn apply(&self, config: Config) -> Result<Config> {
         self.set.iter().try_fold(config, |config, Setting { path, value, typed }| {
             config.overridden(path, value).map_err(|error| anyhow!("--set {typed}: {error}"))
         })
     }
 
-    /// The parameters in the name of a folder; `None` without any.
+    /// Returns the parameters for the name of a folder; `None` without any.
     pub(crate) fn in_name(&self) -> Option<String> {
         let last = |setting: &Setting| {
             let from = setting.path.rfind('.').map_or(0, |dot| dot + 1);

@@ -1,4 +1,4 @@
-//! Values that can be typed: numbers with their bounds, poses.
+//! The values of arguments: numbers with their bounds, and poses.
 
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::path::PathBuf;
@@ -61,11 +61,11 @@ pub(super) fn place(text: &str) -> Result<Point2<f64>, String> {
     }
 }
 
-/// A name and the file that it is of, typed as NAME=FILE.
+/// Parses a name and its file, NAME=FILE.
 ///
 /// # Errors
 /// If there is no name.
 pub fn named_file(text: &str) -> Result<(String, PathBuf), String> {
-    let (name, file) = text.split_once('=').ok_or("it is NAME=FILE")?;
+    let (name, file) = text.split_once('=').ok_or("expected NAME=FILE")?;
     Ok((name.to_owned(), file.into()))
 }

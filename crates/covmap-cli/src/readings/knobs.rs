@@ -1,9 +1,9 @@
-//! What can be turned at the simulated sonars.
+//! The fitted parameters of the simulated sonars.
 
 use covmap_lab::Config;
 use covmap_sonar::RingSpecification;
 
-/// A number of the physics, with the interval in which it is searched.
+/// A number of the physics, with its search interval.
 pub(super) struct Knob {
     from: f64,
     to: f64,
@@ -11,8 +11,10 @@ pub(super) struct Knob {
     set: fn(&mut Config, f64),
 }
 
-/// All knobs but the surface, the number of rays and of mirrors, the blanking and the noise of
-/// a good echo, which a table of coarse kinds does not show.
+/// The knobs of the fit.
+///
+/// A table of coarse kinds does not show the number of rays and of mirrors, the blanking and the
+/// noise of a good echo; these and the surface stay as they are.
 pub(super) const KNOBS: [Knob; 6] = [
     Knob { from: 0.05, to: 0.4, get: half_angle, set: set_half_angle },
     Knob {
@@ -33,26 +35,26 @@ pub(super) const KNOBS: [Knob; 6] = [
 ];
 
 impl Knob {
-    /// Where it stands, from 0 to 1.
+    /// Returns the setting of the knob, from 0 to 1.
     pub(super) fn place(&self, config: &Config) -> f64 {
         (((self.get)(config) - self.from) / (self.to - self.from)).clamp(0.0, 1.0)
     }
 
-    /// Sets it to a place from 0 to 1.
+    /// Sets the knob to a place from 0 to 1.
     pub(super) fn set(&self, config: &mut Config, place: f64) {
-        // Four digits are enough, and can be read.
+        // Four digits are enough, and readable.
         let value = self.from + place * (self.to - self.from);
         (self.set)(config, (value * 1e4).round() / 1e4);
     }
 }
 
-/// The cone of the first sensor, at which all are set.
+/// Returns the half-angle of the first sensor's cone; all sensors get the same.
 fn half_angle(config: &Config) -> f64 {
     let RingSpecification::Sensors(sensors) = &config.robot.ring else { return 0.0 };
     sensors.first().map_or(0.0, |sensor| sensor.half_angle)
 }
 
-/// A ring with a name keeps its cones.
+/// Sets the half-angle of all cones; a named ring keeps its own.
 fn set_half_angle(config: &mut Config, half_angle: f64) {
     if let RingSpecification::Sensors(sensors) = &mut config.robot.ring {
         sensors.iter_mut().for_each(|sensor| sensor.half_angle = half_angle);

@@ -1,17 +1,17 @@
-//! How often readings are right, too short, too long, or missing, by true distance.
+//! The frequencies of right, short, long and missing readings, by true distance.
 
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 use covmap_sonar::Range;
 
 /// A reading this near to the truth is right \[m\].
 const RIGHT: f64 = 0.15;
-/// The true distances of each row end here \[m\]; readings of what is farther are not counted.
+/// The ends of the rows' true distances \[m\]; readings of farther objects are not counted.
 const ENDS: [f64; 6] = [0.5, 1.0, 2.0, 3.0, 4.0, 5.0];
 
 /// The kinds of readings.
 const KINDS: [&str; 4] = ["right", "short", "long", "no echo"];
 
-/// How many readings of each kind there are, by true distance.
+/// The numbers of readings of each kind, by true distance.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Table {
     counts: [[u32; KINDS.len()]; ENDS.len()],
@@ -39,18 +39,18 @@ impl Table {
     /// The columns of [`Table::lines`].
     pub(super) const HEADING: &str = "to_m,readings,right,short,long,no_echo";
 
-    /// How many readings it counts.
+    /// Returns the number of readings.
     pub(super) fn count(&self) -> u32 {
         self.counts.iter().flatten().sum()
     }
 
-    /// The shares of the kinds in a row, if it has readings.
+    /// Returns the shares of the kinds in a row, if it has readings.
     fn shares(&self, row: usize) -> Option<[f64; KINDS.len()]> {
         let total: u32 = self.counts[row].iter().sum();
         (total > 0).then(|| self.counts[row].map(|n| f64::from(n) / f64::from(total)))
     }
 
-    /// A line for each true distance.
+    /// Returns a line for each true distance.
     pub(super) fn lines(&self, separator: &str) -> Vec<String> {
         let line = |(row, end): (usize, &f64)| {
             let shares = self.shares(row)?.map(|share| format!("{share:.3}"));
@@ -60,8 +60,9 @@ impl Table {
         ENDS.iter().enumerate().filter_map(line).collect()
     }
 
-    /// The mean log-likelihood of these readings' kinds, if they are as frequent as in another
-    /// table \[nats\]. Half a reading is added to each of its kinds, so that none is impossible.
+    /// Returns the mean log-likelihood of these readings' kinds under the frequencies of another
+    /// table \[nats\]. Half a reading is added to each kind of the other table, and no kind is
+    /// impossible.
     pub(super) fn log_likelihood_under(&self, model: &Table) -> f64 {
         let mut sum = 0.0;
         for (counts, expected) in self.counts.iter().zip(&model.counts) {
@@ -74,7 +75,7 @@ impl Table {
     }
 }
 
-/// A panel for each kind.
+/// Returns a panel for each kind.
 pub(super) fn figure(rows: &[(&str, Table)]) -> Figure {
     let middle = |row: usize| 0.5 * (ENDS[row] + if row == 0 { 0.0 } else { ENDS[row - 1] });
     let panel = |(kind, name): (usize, &&str)| {
@@ -96,9 +97,9 @@ pub(super) fn figure(rows: &[(&str, Table)]) -> Figure {
         }
     };
     Figure {
-        title: "Readings of sonars, by what the laser says".into(),
+        title: "Readings of sonars, by true distance".into(),
         subtitle:
-            "right: within 0.15 m; what there is: the nearest laser echo within 7.5° of the axis"
+            "right: within 0.15 m; true distance: the nearest laser echo within 7.5° of the axis"
                 .into(),
         panels: KINDS.iter().enumerate().map(panel).map(Into::into).collect(),
         columns: 2,

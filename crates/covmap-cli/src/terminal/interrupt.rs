@@ -1,27 +1,30 @@
-//! Ctrl-C: the first ends the work in good order, the second at once. Where nobody watches for it,
-//! while a world is built or a picture drawn, the first ends at once as well.
+//! Ctrl-C: the first ends the work in good order, the second at once.
+//!
+//! While no watcher asks, such as when a world is built or a picture drawn, the first ends the
+//! program at once as well.
 
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-/// What a shell expects of a program that ended by Ctrl-C.
+/// The exit code that a shell expects of a program that Ctrl-C ended.
 pub const EXIT_CODE: u8 = 130;
 
-/// Whoever watches has so long to notice, such as a planner to decide; then it ends all the same.
+/// The time that a watcher has to notice, such as a planner that decides; after it, the program
+/// ends.
 const PATIENCE: Duration = Duration::from_secs(30);
 
-/// Whether Ctrl-C was pressed.
+/// The state of Ctrl-C.
 #[derive(Debug, Clone, Default)]
 pub struct Interrupt(Arc<State>);
 
 #[derive(Debug, Default)]
 struct State {
     pressed: AtomicBool,
-    /// Somebody asks again and again.
+    /// Whether a watcher asks again and again.
     watched: AtomicBool,
-    /// Somebody asked after it was pressed.
+    /// Whether a watcher asked after Ctrl-C.
     noticed: AtomicBool,
 }
 
@@ -48,7 +51,8 @@ impl Interrupt {
         });
     }
 
-    /// Whether it was pressed. Whoever asks goes on asking until he is [done](Self::done).
+    /// Returns whether Ctrl-C was pressed. The caller keeps asking until it calls
+    /// [`done`](Self::done).
     pub fn is_pressed(&self) -> bool {
         self.0.watched.store(true, Ordering::SeqCst);
         let pressed = self.0.pressed.load(Ordering::SeqCst);
@@ -58,14 +62,14 @@ impl Interrupt {
         pressed
     }
 
-    /// Nobody watches any longer, until it is asked again. Returns whether it was pressed.
+    /// Ends the watch until the next question, and returns whether Ctrl-C was pressed.
     pub fn done(&self) -> bool {
         let pressed = self.is_pressed();
         self.0.watched.store(false, Ordering::SeqCst);
         pressed
     }
 
-    /// What a watcher answers: to go on until it is pressed.
+    /// Returns the answer of a watcher: to continue until Ctrl-C.
     pub fn flow(&self) -> ControlFlow<()> {
         if self.is_pressed() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }

@@ -1,4 +1,4 @@
-//! A line on the terminal that says how far an exploration is.
+//! A line on the terminal with the progress of an exploration.
 
 use super::say;
 use covmap_campaign::Step;
@@ -10,13 +10,15 @@ use std::io::IsTerminal;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
-/// Looking at the whole map takes time: this long passes between two looks, and this many times
-/// as long as the last one took.
+/// The pause between two lines. Evaluating the whole map takes time: the pause is at least this
+/// long, and at least [`PATIENCE`] times as long as the last evaluation.
 const PAUSE: Duration = Duration::from_millis(100);
 const PATIENCE: u32 = 20;
 
-/// Scans, path, open cells, mean entropy and time; nothing where nobody looks. No share of what is
-/// done: cells that a scan finds are open, so that it would fall.
+/// The line of progress: scans, path, open cells, mean entropy and time; nothing without a
+/// terminal.
+///
+/// There is no share of the finished work: scans find open cells, and the share would fall.
 #[derive(Debug)]
 pub struct Progress {
     line: Option<ProgressBar>,
@@ -25,7 +27,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A line on the standard error, if that is a terminal and the user wants it.
+    /// Returns a line on the standard error, if that is a terminal and the user wants it.
     pub fn new(quiet: bool) -> Self {
         let watched = !quiet && std::io::stderr().is_terminal();
         let line = watched.then(|| {
@@ -38,7 +40,7 @@ impl Progress {
         Self { line, started: Instant::now(), next: Mutex::new(Instant::now()) }
     }
 
-    /// Shows how far it is, but not too often.
+    /// Shows the progress of an exploration, but not too often.
     pub fn show(&self, mission: &Mission, view: &View<'_>) {
         self.sometimes(|| {
             format!(
@@ -52,13 +54,12 @@ impl Progress {
         });
     }
 
-    /// Shows a line that is not of an exploration, but not too often.
+    /// Shows another line, but not too often.
     pub fn tell(&self, text: &dyn Display) {
         self.sometimes(|| escaped(&text).to_string());
     }
 
-    /// Shows a line, if the last one has stood there for long enough; what takes long to say is said less
-    /// often.
+    /// Shows a line if the last one has stood long enough; costly lines appear less often.
     fn sometimes(&self, text: impl FnOnce() -> String) {
         let (Some(line), Ok(mut next)) = (&self.line, self.next.lock()) else { return };
         let now = Instant::now();
@@ -68,14 +69,14 @@ impl Progress {
         }
     }
 
-    /// Says that something else takes time now.
+    /// Reports that another task takes time now.
     pub fn say(&self, text: &str) {
         if let Some(line) = &self.line {
             line.set_message(escaped(text).to_string());
         }
     }
 
-    /// Does something with the terminal free of the line.
+    /// Calls a function while the terminal is free of the line.
     pub fn aside<T>(&self, what: impl FnOnce() -> T) -> T {
         match &self.line {
             Some(line) => line.suspend(what),
@@ -91,17 +92,16 @@ impl Progress {
     }
 }
 
-/// A bar that says how many runs of a campaign are done, what they measured, and how much time is
-/// left.
+/// A bar with the number of finished runs of a campaign, their measurements, and the time left.
 #[derive(Debug)]
 pub struct Bar {
     bar: ProgressBar,
-    /// Scans and metres of all runs since it began.
+    /// Scans and metres of all runs since the bar began.
     measured: Mutex<(u64, f64)>,
 }
 
 impl Bar {
-    /// A bar on the standard error, if that is a terminal and the user wants it.
+    /// Returns a bar on the standard error, if that is a terminal and the user wants it.
     pub fn new(campaign: &str, quiet: bool) -> Self {
         let watched = !quiet && std::io::stderr().is_terminal();
         let bar = if watched { ProgressBar::new(0) } else { ProgressBar::hidden() };
@@ -115,13 +115,13 @@ impl Bar {
         Self { bar, measured: Mutex::default() }
     }
 
-    /// Takes note of what a campaign tells.
+    /// Updates the bar by a step of a campaign.
     pub fn note(&self, step: &Step) {
         match step {
             Step::Begin { recorded, of } => {
                 self.bar.set_length(*of as u64);
                 self.bar.set_position(*recorded as u64);
-                // What was done before says nothing of the time that is left.
+                // Earlier runs say nothing about the time left.
                 self.bar.reset_eta();
             }
             Step::Note(text) => self.bar.suspend(|| say::note(text)),
@@ -147,7 +147,7 @@ impl Bar {
     }
 }
 
-/// The mean entropy of the cells in the extent \[nats\].
+/// Returns the mean entropy of the cells in the extent \[nats\].
 fn mean_entropy(mission: &Mission, view: &View<'_>) -> f64 {
     let inside = mission.outside.iter().filter(|(_, outside)| !**outside);
     let (mut sum, mut count) = (0.0, 0u32);

@@ -1,4 +1,4 @@
-//! Words to the user, a line each: what rules the terminal is escaped, and numbers are short.
+//! Messages to the user, a line each: control characters are escaped, and numbers are short.
 
 use clap::error::{ContextKind, ContextValue};
 use covmap_io::escaped;
@@ -8,17 +8,17 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 use std::sync::Mutex;
 
-/// A number with more digits was never typed so; counts have at most 20.
+/// The largest number of digits that a user types; counts have at most 20.
 const MOST_DIGITS: usize = 20;
 /// The first line that could not be written, if any.
 static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);
 
-/// Prints a line; [`finish`] tells whether that worked.
+/// Prints a line; [`finish`] reports failures.
 pub fn line(text: impl Display) {
     keep(writeln!(io::stdout(), "{}", tame(text)));
 }
 
-/// Prints what clap has to say, and returns how the program ends.
+/// Prints the message of clap, and returns the exit code.
 pub fn clap(mut told: clap::Error) -> ExitCode {
     let typed = |(kind, value): (ContextKind, &ContextValue)| match value {
         ContextValue::String(text) => Some((kind, ContextValue::String(escaped(text).to_string()))),
@@ -35,26 +35,26 @@ pub fn clap(mut told: clap::Error) -> ExitCode {
     u8::try_from(told.exit_code()).map_or(ExitCode::FAILURE, ExitCode::from)
 }
 
-/// Prints what went wrong, in one sentence.
+/// Prints an error, in one sentence.
 pub fn error(error: &anyhow::Error) {
     let _ = writeln!(io::stderr(), "error: {}", tame(format_args!("{error:#}")));
 }
 
-/// Prints something to know that is no error.
+/// Prints a remark that is not an error.
 pub fn note(text: impl Display) {
     let _ = writeln!(io::stderr(), "note: {}", tame(text));
 }
 
-/// Says what there is to say about the file of a world.
+/// Prints the remarks about the file of a world.
 pub fn remarks(remarks: &Remarks) {
     remarks.warnings.iter().for_each(note);
     remarks.areas.iter().for_each(line);
 }
 
-/// Whether all lines were written.
+/// Returns whether all lines were written.
 ///
 /// # Errors
-/// Why the first one was not.
+/// The error of the first line that was not written.
 pub fn finish() -> io::Result<()> {
     keep(io::stdout().flush());
     let failed = FAILED.lock().ok().and_then(|mut failed| failed.take());
@@ -67,13 +67,13 @@ fn keep(written: io::Result<()>) {
     }
 }
 
-/// A text as it is printed.
+/// Returns a text as it is printed.
 fn tame(text: impl Display) -> String {
     short_numbers(&escaped(&text).to_string())
 }
 
-/// Writes numbers of hundreds of digits with an exponent, which is as exact; a float is printed
-/// with all its zeros otherwise.
+/// Writes numbers of hundreds of digits with an exponent, which is as exact; otherwise a float is
+/// printed with all its zeros.
 fn short_numbers(text: &str) -> String {
     let (mut short, mut rest) = (String::new(), text);
     while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
@@ -81,7 +81,7 @@ fn short_numbers(text: &str) -> String {
         let end = number.find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(number.len());
         let number = number[..end].trim_end_matches('.');
         let after = &rest[start + number.len()..];
-        // Digits of a name are no number.
+        // The digits of a name are not a number.
         let named = |c: char| c.is_alphanumeric() || "_/.".contains(c);
         let alone = !before.ends_with(named) && !after.starts_with(char::is_alphanumeric);
         let value =

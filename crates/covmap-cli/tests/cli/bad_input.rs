@@ -1,4 +1,4 @@
-//! Scenarios, configurations, arguments and folders that are wrong.
+//! Invalid scenarios, configurations, arguments and folders.
 
 use crate::typed::{Shell, shipped};
 
@@ -134,7 +134,7 @@ fn a_folder_that_cannot_be_written_is_refused() {
     shell.refuse(&format!("explore {lab} --out file"), &["file: is a file"]);
     shell.refuse(&format!("explore {lab} --out file/run"), &["file/run"]);
     shell.refuse(&format!("explore {lab} --out /proc/none/run"), &["/proc/none"]);
-    // Where this lies in a folder that also holds the repository, that is the reason.
+    // If the test runs in a folder that also holds the repository, the repository is the reason.
     let typed = shell.expect(&format!("explore {lab} --out .."), 2);
     let reasons = ["is no name for an output folder", "which this command reads"];
     assert!(reasons.iter().any(|reason| typed.err.contains(reason)), "{typed:?}");

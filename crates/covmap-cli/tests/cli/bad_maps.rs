@@ -1,11 +1,11 @@
-//! Maps of map_server that are wrong.
+//! Invalid maps of map_server.
 
 use crate::typed::Shell;
 
 const YAML: &str = "image: map.pgm\nresolution: 0.1\norigin: [0.0, 0.0, 0.0]\nnegate: 0\n\
                     occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
-/// A free room of 20 × 20 cells.
+/// Returns a free room of 20 × 20 cells.
 fn image() -> Vec<u8> {
     [b"P5\n20 20\n255\n".as_slice(), &[254; 400]].concat()
 }
@@ -85,7 +85,7 @@ fn a_map_without_free_space_is_refused() {
         "map.yaml: nothing of the map is free (0.00 m² free, 4.00 m² occupied, 0.00 m² unknown)";
     refuse(YAML, Some(&all(0)), &[black, "negate"]);
     refuse(YAML, Some(&all(205)), &["map.yaml: all of its 20 × 20 pixels are unknown"]);
-    // One free cell is a map, but no place for a robot.
+    // One free cell makes a map, but has no room for a robot.
     let mut one = all(205);
     one[13 + 210] = 254;
     let shell = Shell::new();

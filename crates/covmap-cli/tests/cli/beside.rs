@@ -28,7 +28,7 @@ fn runs_are_laid_side_by_side_with_their_accuracy() {
 #[test]
 fn a_class_without_a_cell_has_no_numbers_and_no_part_in_the_mean() {
     let shell = Shell::new();
-    // Walls along the borders of cells: none is covered in part.
+    // Walls run along the borders of cells: no cell is partly covered.
     shell.write("room.ron", r#"(name: "room", extent: (width: 4.0, height: 3.0), obstacles: [])"#);
     shell.expect("explore room.ron --resolution 0.2 --max-scans 9 --out run --quiet", 3);
     shell.expect("beside run --out both", 0);

@@ -1,11 +1,11 @@
-//! `campaign` and `collect`: the same bytes, whatever happens on the way.
+//! `campaign` and `collect`: the same bytes, whatever happens during the runs.
 
 use crate::typed::{Shell, shipped};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Twelve runs of a few milliseconds each.
+/// Returns a shell with twelve runs of a few milliseconds each.
 fn tiny() -> Shell {
     let shell = Shell::new();
     shell.write("room.ron", "(name: \"room\", extent: (width: 3.0, height: 2.4), obstacles: [])");
@@ -13,7 +13,7 @@ fn tiny() -> Shell {
     shell
 }
 
-/// The tiny campaign, with parts of it replaced.
+/// Returns the tiny campaign, with parts of it replaced.
 fn campaign(replaced: &[(&str, &str)]) -> String {
     let good = format!(
         "(
@@ -34,7 +34,7 @@ fn campaign(replaced: &[(&str, &str)]) -> String {
     })
 }
 
-/// All that is a function of the campaign: the tables without the times, and the list.
+/// Returns everything that the campaign determines: the tables without the times, and the list.
 fn bytes(shell: &Shell, dir: &str) -> Vec<Vec<u8>> {
     let files = ["runs.csv", "summary.csv", "campaign.json"];
     files.map(|name| fs::read(shell.path(dir).join(name)).unwrap()).to_vec()
@@ -47,7 +47,7 @@ fn run_files(shell: &Shell, dir: &str) -> Vec<PathBuf> {
     files
 }
 
-/// The names of the tables of a kind in a folder.
+/// Returns the names of the tables of a kind in a folder.
 fn tables(shell: &Shell, dir: &str, kind: &str) -> Vec<String> {
     let entries = fs::read_dir(shell.path(dir)).unwrap();
     let mut names: Vec<String> =
@@ -57,7 +57,7 @@ fn tables(shell: &Shell, dir: &str, kind: &str) -> Vec<String> {
     names
 }
 
-/// The lines of a run's file that no clock has a part in.
+/// Returns the lines of a run's file without clock times.
 fn timeless(file: &Path) -> [String; 2] {
     let text = fs::read_to_string(file).unwrap();
     let lines: Vec<&str> = text.lines().collect();
@@ -100,7 +100,7 @@ fn a_line_holds_what_the_summary_of_the_same_run_does() {
     shell.expect(line, 3);
     let summary = shell.json("one/summary.json");
     for (name, value) in summary.as_object().unwrap() {
-        // Groups have a column for each number, and not every world has walls of either surface.
+        // Groups have a column for each number, though some worlds lack walls of either surface.
         let elsewhere = ["world", "strategy", "seed", "seconds"].contains(&name.as_str());
         if elsewhere || value.is_object() || name.starts_with("wall_recall_") {
             continue;
@@ -128,7 +128,7 @@ fn a_campaign_that_is_killed_at_any_moment_ends_with_the_same_bytes() {
         std::thread::sleep(Duration::from_micros((random >> 32) % 60_000));
         child.kill().unwrap();
         child.wait().unwrap();
-        // So that every kill finds something left to do.
+        // A removed file leaves work for every kill.
         if let Some(file) = killed_files(&shell).first() {
             fs::remove_file(file).unwrap();
         }
@@ -140,7 +140,7 @@ fn a_campaign_that_is_killed_at_any_moment_ends_with_the_same_bytes() {
     assert_eq!(files("killed"), files("whole"));
 }
 
-/// The files of the runs that are done; the folder may not even be there.
+/// Returns the files of the finished runs; the folder may be missing.
 fn killed_files(shell: &Shell) -> Vec<PathBuf> {
     let entries = fs::read_dir(shell.path("killed/runs")).into_iter().flatten();
     let files = entries.map(|entry| entry.unwrap().path());
@@ -154,14 +154,14 @@ fn what_is_done_is_not_done_again_but_what_is_damaged_is() {
     let expected = bytes(&shell, "out/tiny");
     let files = run_files(&shell, "out/tiny");
     let before: Vec<Vec<u8>> = files.iter().map(|file| fs::read(file).unwrap()).collect();
-    // A digit, the end, the whole, and the paths only.
+    // The damage: a digit, the end, the whole file, and the paths only.
     let text = String::from_utf8(before[1].clone()).unwrap();
     fs::write(&files[1], text.replacen("\"scans\":1", "\"scans\":2", 1)).unwrap();
     fs::write(&files[3], &before[3][..before[3].len() / 2]).unwrap();
     fs::write(&files[5], "").unwrap();
     fs::write(&files[7], &before[7][..before[7].len() - 9]).unwrap();
     fs::copy(&files[8], &files[9]).unwrap();
-    // What a killed process left in flight is cleared away.
+    // A file that a killed process left half-written is removed.
     fs::write(files[0].with_extension("partial"), "cut").unwrap();
     let typed = shell.expect("campaign tiny.ron --jobs 2", 0);
     assert_eq!(typed.err.lines().count(), 5, "{typed:?}");
@@ -173,7 +173,7 @@ fn what_is_done_is_not_done_again_but_what_is_damaged_is() {
     assert_eq!(run_files(&shell, "out/tiny"), files);
     for (i, file) in files.iter().enumerate() {
         let same = fs::read(file).unwrap() == before[i];
-        // The times tell that a run was done again.
+        // The times show that a run was repeated.
         assert_eq!(same, ![1, 3, 5, 7, 9].contains(&i), "run {i}");
     }
 }
@@ -187,7 +187,7 @@ fn tables_do_not_outlive_the_runs_that_they_tell_of() {
         let names = ["runs.csv", "summary.csv", "timings.csv"];
         names.map(|name| shell.path("out/tiny").join(name).exists())
     };
-    // A folder stands where the result of a missing run is to be.
+    // A folder stands in the place of a missing run's result.
     let file = run_files(&shell, "out/tiny")[4].clone();
     fs::remove_file(&file).unwrap();
     fs::create_dir_all(file.join("in the way")).unwrap();
@@ -260,7 +260,7 @@ fn the_numbers_of_a_strategy_and_the_runs_cut_short_have_columns() {
     assert!(all > 0, "some are cut short");
 }
 
-/// The fields of a line, some of them quoted.
+/// Returns the fields of a line, some of them quoted.
 fn fields(line: &str) -> Vec<String> {
     let mut fields = vec![String::new()];
     let mut quoted = false;
@@ -284,7 +284,7 @@ fn results_of_another_version_are_not_mixed_in() {
     assert!(version.starts_with(concat!(env!("CARGO_PKG_VERSION"), "+")), "{version}");
     shell.write("b/campaign.json", list.replace(&version, "0.0.9+other"));
     shell.refuse("collect a b --out c", &["b: was made by covmap 0.0.9+other", &version]);
-    // Nor in the folder where the results go.
+    // Nor may the folder for the results be of another version.
     shell.refuse("collect a --out b", &["b: was made by covmap 0.0.9+other", &version]);
     let stray = run_files(&shell, "a")[0].clone();
     fs::rename(&stray, stray.with_file_name("0123.run")).unwrap();
@@ -366,7 +366,7 @@ fn a_result_that_cannot_be_written_stops_the_campaign_and_leaves_what_is_done() 
     shell.expect("campaign tiny.ron --shard 1/2", 0);
     let done = run_files(&shell, "out/tiny");
     let before: Vec<_> = done.iter().map(|file| fs::read(file).unwrap()).collect();
-    // Folders stand where files are to be.
+    // Folders stand in the places of files.
     shell.expect("campaign tiny.ron --out all", 0);
     for file in run_files(&shell, "all") {
         let name = Path::new("out/tiny/runs").join(file.file_name().unwrap());

@@ -2,7 +2,7 @@
 
 use crate::typed::{Shell, short_run};
 
-/// A short run with a strategy, in the folder `run`.
+/// Returns a short run with a strategy, in the folder `run`.
 fn explored(strategy: &str) -> Shell {
     let shell = Shell::new();
     shell.expect(&format!("{} --strategy {strategy} --quiet", short_run()), 3);
@@ -45,7 +45,7 @@ fn a_trace_whose_last_line_was_cut_is_still_explained() {
     shell.expect("explain cut.partial --step 3", 0);
 }
 
-/// Another number after the first place where `before` stands.
+/// Returns the text with another number after the first occurrence of `before`.
 fn number_after(text: &str, before: &str, number: &str) -> String {
     let (head, tail) = text.split_once(before).unwrap();
     let end = tail.find([',', ']', '}']).unwrap();
@@ -100,7 +100,7 @@ fn what_became_of_a_cell_is_told() {
     let shell = explored("IG");
     let typed = shell.expect("explain run --cell 3,2", 0);
     assert!(typed.out.contains("H = ") && typed.out.contains("scans counted"), "{}", typed.out);
-    // In the middle of a wall that the robot has seen.
+    // The place is in the middle of a wall that the robot has seen.
     let table = std::fs::read_to_string(shell.path("run/certificate.csv")).unwrap();
     let told = table.lines().skip(1).find(|line| {
         let row: Vec<&str> = line.split(',').collect();

@@ -146,7 +146,7 @@ fn quiet_is_quiet() {
     assert_eq!((typed.out.as_str(), typed.err.as_str()), ("", ""));
 }
 
-/// Narrower registers than the processor has are used as asked for; wider ones cannot be.
+/// Registers narrower than the processor's are used as requested; wider ones are not available.
 #[test]
 fn an_exploration_is_the_same_run_with_every_kind_of_vector_registers() {
     let shell = Shell::new();
@@ -191,13 +191,13 @@ fn a_foreign_folder_is_refused_and_one_of_ours_is_replaced() {
     shell.expect(&short_run(), 3);
     assert!(shell.path("run/note.txt").exists());
     assert_eq!(shell.json("run/summary.json")["scans"], 30);
-    // Another run does not take its place without a word.
+    // Another run does not replace the folder without --force.
     let other = short_run().replace("30", "5");
     shell.refuse(&other, &["run: holds another run (explore lab, IG_CL:0.1, seed 1", "--force"]);
     shell.expect(&format!("{other} --force"), 3);
     assert!(!shell.path("run/note.txt").exists());
     assert_eq!(shell.json("run/summary.json")["scans"], 5);
-    // Nor is what was corrected by hand.
+    // A map corrected by hand is kept, too.
     shell.write("run/map.yaml", "image: map.pgm");
     shell.refuse(&other, &["run/map.yaml: is not as covmap wrote it"]);
 }
@@ -233,14 +233,14 @@ fn the_names_of_folders_tell_runs_apart() {
 #[test]
 fn a_folder_that_holds_an_input_is_not_replaced() {
     let shell = Shell::new();
-    // Of few scans so little is sure that no robot would fit into the map.
+    // After few scans, too few cells are certain for a robot to fit into the map.
     shell.expect(&short_run().replace("--max-scans 30", ""), 0);
     let line = "explore run/map.yaml --resolution 0.2 --max-scans 1 --out run --force";
     shell.refuse(line, &["run: holds run/map.yaml, which this command reads"]);
 }
 
-/// The map that a run wrote, its belief, and the last cells of map.pgm as the report counts
-/// them: free, occupied, unknown.
+/// Returns the map that a run wrote, its belief, and the counts of map.pgm's cells as in the
+/// report: free, occupied, unknown.
 fn written(shell: &Shell) -> (MapServerMap, CoverageMap, [usize; 3]) {
     let map = load_map_server(shell.path("run/map.yaml")).unwrap();
     let belief = std::fs::read(shell.path("run/belief.bin")).unwrap();
@@ -273,7 +273,8 @@ fn what_leaves_for_other_software_is_safe() {
         unsure += usize::from(belief.is_known(here) && !resolved);
         let expected = match *read {
             MapCell::Occupancy(p) if p < 0.5 => (0, resolved && mode <= 0.2 && is_inside),
-            // What is most likely in the way is an obstacle, unless that says next to nothing.
+            // A cell that is most likely an obstacle is occupied, unless its belief says next to
+            // nothing.
             MapCell::Occupancy(_) => (1, belief.is_known(here) && mode >= 0.5 && entropy <= 2.28),
             // Beyond the lab, 6 m × 4.5 m, nothing is free.
             MapCell::Unknown if mode >= 0.5 => (2, !belief.is_known(here) || entropy > 2.27),
@@ -298,7 +299,7 @@ fn thresholds_of_the_map_are_options_and_the_files_name_them() {
     let default = "# free (254): known, entropy <= 0.6 nats, most likely coverage <= 0.2\n";
     assert!(yaml().contains(default), "{}", yaml());
     let loose = counts("--map-entropy 1.1");
-    // Whoever asks for an entropy asks for obstacles that are so certain, too.
+    // A required entropy holds for obstacles, too.
     assert!(loose[0] > usual[0] && loose[1] < usual[1], "{loose:?}");
     let strict = counts("--map-entropy 0.3 --map-free 0.1 --map-occupied 0.9");
     assert!(strict[0] < usual[0] && strict[2] > usual[2], "{strict:?}");

@@ -3,7 +3,8 @@
 use crate::typed::{Shell, shipped};
 use covmap_lab::Config;
 
-/// A fit that takes moments: a small room, few scans, coarse cells, two parameters.
+/// Writes a file for a fit that takes moments: a small room, few scans, coarse cells, two
+/// parameters.
 fn small_fit(shell: &Shell, change: impl Fn(String) -> String) {
     shell.write("room.ron", "(name: \"room\", extent: (width: 3.0, height: 2.4), obstacles: [])");
     let source = |turn, seed| {
@@ -47,7 +48,7 @@ fn a_fit_writes_a_configuration_that_explores() {
     assert!(objective("after") >= objective("before"));
     assert_eq!(report["path"].as_array().unwrap().len(), 24);
     assert_eq!(report["profiles"].as_array().unwrap().len(), 2);
-    // Through the read-out, which is fitted to the same cells, they are likelier still.
+    // The read-out is fitted to the same cells, and makes them likelier still.
     let mean = |which: &str| report["training"][which].clone();
     assert!(objective("read_out") > objective("after"), "{:?}", mean("read_out"));
     let held_out = report["held_out"].as_array().unwrap();
@@ -93,7 +94,7 @@ fn a_map_is_read_through_a_read_out_and_its_belief_stays() {
     assert!(cells(&plain) > Some(50) && cells(&plain) == cells(&read));
     let likelihood = |summary: &serde_json::Value| summary["mean_log_likelihood"].as_f64().unwrap();
     assert!(likelihood(&read) > likelihood(&plain));
-    // Where results go without --out says how the map was read.
+    // Without --out, the folder's name states the read-out.
     shell.expect(&format!("{explore} --read-out fitted/read_out.ron"), 3);
     assert!(shell.path("out/room-IG_CL-0.3-1-config-max6-read_out").is_dir());
 }
@@ -171,7 +172,7 @@ fn a_log_without_a_laser_is_no_survey() {
     shell.refuse("survey missing.log --out truth.ron", &["missing.log"]);
 }
 
-/// The walls of a recorded building, and a fit to it; skipped where the record is absent.
+/// Checks the survey of a recorded building, and a fit to it; skipped without the recording.
 #[test]
 fn a_recorded_robot_is_surveyed_and_fitted() {
     let data = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/sonar8");

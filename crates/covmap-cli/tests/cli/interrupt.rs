@@ -55,7 +55,7 @@ fn ctrl_c_ends_while_a_world_is_built() {
     let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
     assert!(kill.success());
     let status = child.wait().unwrap();
-    // The system's own, if it did not listen yet.
+    // The signal is the system's own if the program did not listen yet.
     assert!(status.code() == Some(130) || status.signal() == Some(2), "{status}");
     assert!(!shell.path("run").exists());
 }

@@ -1,4 +1,4 @@
-//! `map` of logs as people have them: their clocks, keyframes and longest ranges.
+//! `map` of logs from real users: their clocks, keyframes and longest ranges.
 
 use crate::typed::{Shell, Typed};
 use covmap::CoverageMap;
@@ -15,7 +15,7 @@ fn map(log: &str, more: &str) -> (Shell, Typed, serde_json::Value) {
     (shell, typed, summary)
 }
 
-/// The most likely coverage at a place, if it is known.
+/// Returns the most likely coverage at a place, if it is known.
 fn coverage(shell: &Shell, x: f64, y: f64) -> Option<f64> {
     let map =
         CoverageMap::from_bytes(&std::fs::read(shell.path("out/belief.bin")).unwrap()).unwrap();
@@ -23,15 +23,16 @@ fn coverage(shell: &Shell, x: f64, y: f64) -> Option<f64> {
     map.is_known(cell).then(|| map.mode(cell))
 }
 
-/// How many cells are more covered than not.
+/// Returns the number of cells that are more covered than not.
 fn covered(shell: &Shell) -> usize {
     let map =
         CoverageMap::from_bytes(&std::fs::read(shell.path("out/belief.bin")).unwrap()).unwrap();
     map.grid().cells().filter(|cell| map.is_known(*cell) && map.mode(*cell) > 0.5).count()
 }
 
-/// A robot in a corridor 2 m wide, at 0.2 m/s, with four sonars; its clock shows what `shown` makes
-/// of the time.
+/// Returns the log of a robot in a corridor 2 m wide, at 0.2 m/s, with four sonars.
+///
+/// The robot's clock shows what `shown` makes of the time.
 fn corridor(shown: impl Fn(u32) -> String) -> String {
     let mut log = String::new();
     for i in 0..40u32 {
@@ -67,7 +68,7 @@ fn coarse_times_and_clocks_that_leap_or_start_anew_lose_nothing_else() {
     assert!(typed.out.contains("starts anew 1 time"), "{typed:?}");
 }
 
-/// A line FLASER of a robot at x, in a corridor 2 m wide and without an end.
+/// Returns a line FLASER of a robot at x, in an endless corridor 2 m wide.
 fn keyframe(x: f64, time: f64) -> String {
     let range = |i: i32| (1.0 / f64::from(i - 90).to_radians().sin().abs()).min(20.0);
     let ranges: Vec<String> = (0..181).map(|i| format!("{:.2}", range(i))).collect();
@@ -111,7 +112,7 @@ fn where_nothing_answers_there_is_no_phantom() {
     }
     let (phantoms, out) = silent("# nothing says so", "2.00");
     assert!(phantoms > 0 && out.contains("24 of 24 echoes are 2 m"), "{out}");
-    // Centimetres for metres.
+    // The log has centimetres instead of metres.
     let (_, out) = silent("# nothing says so", "180");
     assert!(out.contains("0 echoes, 24 no echoes") && out.contains("not in metres?"), "{out}");
 }

@@ -1,7 +1,7 @@
 //! The program as a user types it.
 #![allow(clippy::unwrap_used, reason = "tests")]
 
-/// The program that is typed.
+/// The tested program.
 const PROGRAM: &str = env!("CARGO_BIN_EXE_covmap");
 
 mod bad_input;

@@ -38,7 +38,8 @@ const KEYS: [&str; 15] = [
     "remarks",
 ];
 
-/// Two sonars that look ahead and to the left, while the robot stands, and drives for a metre.
+/// Returns the log of two sonars that face ahead and to the left; the robot stands, then drives for
+/// a metre.
 fn drive() -> String {
     let mut log = String::new();
     for i in 0..30u32 {
@@ -168,7 +169,7 @@ fn bad_folders_are_refused() {
     shell.refuse("map log --sensor laser", &["log: is a folder without laser.txt"]);
 }
 
-/// The scans that a run's trace holds.
+/// Returns the scans of a run's trace.
 fn scans(trace: &Path) -> Vec<Scan> {
     let events = read_json_lines::<Event>(trace).unwrap().skip(1);
     let scan = |event| match event {
@@ -188,7 +189,7 @@ fn the_log_of_a_run_is_read_back_as_the_same_scans() {
     let trace = shell.path("run/trace.jsonl");
     let header: TraceHeader = read_json_lines(&trace).unwrap().next().unwrap().unwrap();
     let ring = SonarRing::from_specification(&header.config.robot.ring).unwrap();
-    // The log says all that there is to know of the ring.
+    // The log states everything about the ring.
     let other = SonarRing::new(ring.beams()[..1].to_vec()).unwrap();
     let options = LogOptions { sensor: Sensor::Sonar, ring: other, poses: None };
     let mut log = LogReader::open(shell.path("run.log"), &options).unwrap();

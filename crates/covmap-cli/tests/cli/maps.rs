@@ -1,4 +1,4 @@
-//! Maps of map_server as people have them.
+//! Maps of map_server from real users.
 
 use crate::typed::{Shell, Typed};
 
@@ -20,7 +20,7 @@ fn image() -> Vec<u8> {
     image
 }
 
-/// The same as text.
+/// Returns the same image as text.
 fn text_image() -> String {
     let numbers: Vec<String> =
         (0..WIDTH * HEIGHT).map(|i| grey(i % WIDTH, i / WIDTH).to_string()).collect();
@@ -30,7 +30,8 @@ fn text_image() -> String {
 const YAML: &str = "image: map.pgm\nresolution: 0.1\norigin: [-3.0, -2.5, 0.0]\nnegate: 0\n\
                     occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
-/// What `truth` says of the room with another line in its description, and its table.
+/// Runs `truth` on the room with another line in its description, and returns its output and its
+/// table.
 fn truth(image: &[u8], from: &str, to: &str) -> (Typed, Vec<[f64; 3]>) {
     let shell = Shell::new();
     shell.write("map.yaml", YAML.replace(from, to));
@@ -55,10 +56,10 @@ fn unknown_margins_cost_nothing_and_areas_are_said() {
                 lies in 40 × 30 of its 60 × 50 cells";
     assert!(typed.out.contains(said), "{typed:?}");
     assert_eq!(typed.err, "");
-    // Three cells more on each side, as around any world.
+    // There are three more cells on each side, as around any world.
     assert!(typed.out.contains("t.csv: 46 × 36 cells"), "{typed:?}");
     assert!((free_area(&table) - 10.64).abs() < 1e-9);
-    // The room is where the file says: free from −1.9 to 1.9 and from −1.4 to 1.4.
+    // The room lies where the file says: free from −1.9 to 1.9 and from −1.4 to 1.4.
     let inside = |[x, y, _]: &[f64; 3]| x.abs() < 1.9 && y.abs() < 1.4;
     assert!(table.iter().all(|row| inside(row) == (row[2] < 0.5)));
 }

@@ -1,8 +1,8 @@
-//! What a user is told who gives something else where a world is expected.
+//! The answers to files that are not worlds.
 
 use crate::typed::{Shell, shipped};
 
-/// The file is refused by both commands, with these words.
+/// Checks that both commands refuse the file with these words.
 #[track_caller]
 fn refuse(name: &str, content: impl AsRef<[u8]>, expected: &[&str]) {
     let shell = Shell::new();
@@ -86,7 +86,7 @@ fn what_is_nothing_known_or_not_there_is_said_so() {
     shell.refuse("explore notes.txt", &[neither]);
     shell.refuse("explore none.png", &["none.png: cannot be read: No such file"]);
     shell.refuse("explore none.ron", &["none.ron: cannot be read: No such file"]);
-    // A scenario with a fault is one.
+    // A scenario with a fault is recognised as a scenario.
     shell.write("room.ron", "(name: \"a\", extent: (width: 3, height: 2), walls: [])");
     shell.refuse("explore room.ron", &["room.ron:1:", "walls"]);
 }

@@ -3,7 +3,7 @@
 use crate::typed::Shell;
 use std::fmt::Write;
 
-/// From a place in a room of 5 × 4 m to its wall, in a direction \[m\].
+/// Returns the distance from a place in a room of 5 × 4 m to its wall, in a direction \[m\].
 fn to_the_wall((x, y): (f64, f64), angle: f64) -> f64 {
     let along = |at: f64, low: f64, high: f64, step: f64| match step {
         s if s > 1e-12 => (high - at) / s,
@@ -13,7 +13,7 @@ fn to_the_wall((x, y): (f64, f64), angle: f64) -> f64 {
     along(x, -1.0, 4.0, angle.cos()).min(along(y, -2.0, 2.0, angle.sin()))
 }
 
-/// The log of a robot that drives through the room; every third sonar hears nothing.
+/// Writes the log of a robot that drives through the room; every third sonar hears nothing.
 pub(crate) fn room(shell: &Shell) {
     let [mut od, mut sonar, mut laser] = [const { String::new() }; 3];
     for i in 0..30u32 {

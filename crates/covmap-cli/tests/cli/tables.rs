@@ -2,7 +2,7 @@
 
 use crate::typed::{Shell, shipped};
 
-/// The rows of a table with a heading.
+/// Returns the rows of a table with a heading.
 fn rows(shell: &Shell, name: &str, heading: &str) -> Vec<[f64; 3]> {
     let text = std::fs::read_to_string(shell.path(name)).unwrap();
     let (first, rest) = text.split_once('\n').unwrap();

@@ -1,15 +1,15 @@
-//! Typing commands, in a folder of their own.
+//! Commands, typed in a folder of their own.
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// A folder in which commands are typed.
+/// A folder for commands.
 pub(crate) struct Shell {
     folder: TempDir,
 }
 
-/// What a command printed, and how it ended.
+/// The output of a command, and its exit code.
 #[derive(Debug)]
 pub(crate) struct Typed {
     pub(crate) code: Option<i32>,
@@ -30,7 +30,7 @@ impl Shell {
         std::fs::write(self.path(name), content).unwrap();
     }
 
-    /// The command of a line; words are separated by blanks.
+    /// Returns the command of a line; words are separated by blanks.
     pub(crate) fn command(&self, line: &str) -> Command {
         let mut command = Command::new(crate::PROGRAM);
         command.args(line.split_whitespace()).current_dir(self.folder.path());
@@ -51,8 +51,7 @@ impl Shell {
         typed
     }
 
-    /// Types a line that must be refused in one sentence with these parts, and leave nothing
-    /// behind.
+    /// Types a line that must be refused in one sentence with these parts, and must leave no files.
     #[track_caller]
     pub(crate) fn refuse(&self, line: &str, parts: &[&str]) {
         let before = self.files();
@@ -67,7 +66,7 @@ impl Shell {
         assert_eq!(self.files(), before, "{line}");
     }
 
-    /// All files and folders, by their paths.
+    /// Returns all files and folders, by their paths.
     pub(crate) fn files(&self) -> Vec<PathBuf> {
         let mut found = Vec::new();
         collect(self.folder.path(), &mut found);
@@ -90,14 +89,14 @@ fn collect(folder: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// A file of the repository.
+/// Returns a file of the repository.
 pub(crate) fn shipped(name: &str) -> String {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors();
     let root = root.into_iter().find(|folder| folder.join("configs").exists()).unwrap();
     root.join(name).to_str().unwrap().to_owned()
 }
 
-/// A short exploration of the shipped laboratory, into the folder `run`.
+/// Returns a short exploration of the shipped laboratory, into the folder `run`.
 pub(crate) fn short_run() -> String {
     format!("explore {} --resolution 0.2 --max-scans 30 --out run", shipped("scenarios/lab.ron"))
 }

@@ -1,4 +1,4 @@
-//! Files that are there, links, pipes and full disks.
+//! Existing files, links, pipes and full disks.
 
 use crate::readings::room;
 use crate::typed::{Shell, shipped, short_run};
@@ -6,7 +6,7 @@ use std::fs;
 use std::io::Read;
 use std::process::{Command, Stdio};
 
-/// Refuses a line, and leaves a file as it is.
+/// Checks that a line is refused, and leaves a file as it is.
 #[track_caller]
 fn keep(shell: &Shell, file: &str, line: &str, parts: &[&str]) {
     let before = fs::read(shell.path(file)).unwrap();
@@ -62,7 +62,7 @@ fn no_command_replaces_what_it_reads() {
     keep(&shell, "run/map.pgm", "log run --out run/map.pgm", &["run/map.pgm: is there already"]);
     keep(&shell, "room/od.txt", "map room --out room --force", &["holds room"]);
     shell.expect("map room --out room/map --quiet", 0);
-    // What was meant to be read does not go with a folder that is replaced.
+    // An input in a folder that would be replaced is kept.
     shell.expect("survey room --out room/map/truth.ron --quiet", 0);
     let line = "readings room --truth room/map/truth.ron --out room/map --force";
     keep(&shell, "room/map/truth.ron", line, &["room/map: holds room/map/truth.ron"]);
@@ -176,7 +176,7 @@ fn links_in_the_folder_of_a_campaign_are_not_followed() {
     for name in ["c/lock", "c/campaign.partial", "c/campaign.json.partial", "c/runs.csv.partial"] {
         let _ = fs::remove_file(shell.path(name));
     }
-    // The lock may have another name, which is nobody's business.
+    // The lock may have another name, which does not matter.
     fs::hard_link(shell.path("mine"), shell.path("c/lock")).unwrap();
     link("../mine", "c/campaign.json.partial");
     link("../mine", "c/runs.csv.partial");
@@ -187,7 +187,7 @@ fn links_in_the_folder_of_a_campaign_are_not_followed() {
     assert!(!typed.err.contains("damaged"), "{typed:?}");
     mine();
     assert!(shell.path("c/runs/notes.partial").exists());
-    // A record without end is damaged, and a link to one is replaced itself.
+    // An endless record is damaged; of a link to one, only the link is replaced.
     for endless in ["sparse", "/dev/zero", "../../mine"] {
         fs::remove_file(shell.path(&run)).unwrap();
         match endless {
@@ -232,7 +232,7 @@ fn a_log_that_cannot_be_written_is_what_the_error_names() {
     shell.expect(&format!("{} --quiet", short_run().replace("30", "3")), 3);
     shell.refuse("log run --out nowhere/l.log", &["nowhere/l.log: cannot be written"]);
     shell.refuse("log run --out /dev/full", &["/dev/full: cannot be written: it is a device"]);
-    // A limit on the size of files does what a full disk does.
+    // A limit on the size of files acts like a full disk.
     let covmap = env!("CARGO_BIN_EXE_covmap");
     shell.write("l.log", "mine");
     let limited = format!("trap '' XFSZ; ulimit -f 0; exec {covmap} log run --out l.log --force");

@@ -1,16 +1,16 @@
-//! The rectangle in which data are drawn: its frame, its grid, and what is cut off by it.
+//! The rectangle in which data are drawn: its frame, its grid, and how it cuts lines off.
 
 use super::scale::{Scale, Tick};
 use super::scene::{Anchor, Scene};
 use crate::picture::{Rgb, text::text_width};
 
 pub(super) const TICK_SIZE: f32 = 12.0;
-/// The length of a tick, and from there to its label.
+/// The length of a tick; `TICK_GAP` is the gap to its label.
 const TICK: f32 = 5.0;
 const TICK_GAP: f32 = 4.0;
 const GRID: Rgb = Rgb(228, 232, 237);
 
-/// Where the data are drawn.
+/// The rectangle in which data are drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Area {
     pub(super) at: [f32; 2],
@@ -19,50 +19,50 @@ pub(super) struct Area {
     pub(super) y: Scale,
 }
 
-/// What a label at the x axis takes of its length.
+/// Returns the length of the x axis that a label takes.
 pub(super) fn room_across(label: &str) -> f32 {
     text_width(label, TICK_SIZE) + 16.0
 }
 
-/// What a label at the y axis takes of its length.
+/// Returns the length of the y axis that a label takes.
 pub(super) fn room_upwards(_: &str) -> f32 {
     TICK_SIZE * 2.2
 }
 
-/// The width of the widest label.
+/// Returns the width of the widest label.
 pub(super) fn widest(ticks: &[Tick]) -> f32 {
     let lines = ticks.iter().flat_map(|tick| tick.label.lines());
     lines.map(|line| text_width(line, TICK_SIZE)).fold(0.0, f32::max)
 }
 
-/// From an axis upwards to the far end of its labels.
+/// Returns the distance from an axis upwards to the far end of its labels.
 pub(super) fn reach(ticks: &[Tick]) -> f32 {
     TICK + TICK_GAP + widest(ticks)
 }
 
-/// From one line of a label to the next.
+/// Distance from one line of a label to the next.
 const LINE: f32 = TICK_SIZE * 1.25;
 
-/// From the x axis to the lower end of its labels.
+/// Returns the distance from the x axis to the lower end of its labels.
 pub(super) fn reach_below(ticks: &[Tick]) -> f32 {
     let lines = ticks.iter().map(|tick| tick.label.lines().count()).max().unwrap_or(1).max(1);
     TICK + TICK_GAP + TICK_SIZE + (lines - 1) as f32 * LINE
 }
 
 impl Area {
-    /// The place of a point, given the share of each axis.
+    /// Returns the place of a point, given the share of each axis.
     #[allow(clippy::cast_possible_truncation, reason = "points of the drawing")]
     pub(super) fn place(&self, [x, y]: [f64; 2]) -> [f32; 2] {
         let ([left, top], [width, height]) = (self.at, self.size);
         [left + x as f32 * width, top + (1.0 - y as f32) * height]
     }
 
-    /// The share of each axis at which a point lies, if it can be drawn at all.
+    /// Returns the share of each axis at which a point lies, if the point can be drawn at all.
     pub(super) fn shares(&self, x: f64, y: f64) -> Option<[f64; 2]> {
         Some([self.x.share(x)?, self.y.share(y)?])
     }
 
-    /// Draws the frame, the ticks, and, if there is to be one, the grid.
+    /// Draws the frame, the ticks, and, if `grid` is set, the grid.
     pub(super) fn draw_frame(
         &self,
         scene: &mut Scene,
@@ -94,7 +94,7 @@ impl Area {
         scene.frame(self.at, self.size, Rgb::FRAME);
     }
 
-    /// Draws the ticks upwards at `x`, to the left (−1) or to the right (1) of it.
+    /// Draws the ticks of an axis upwards at `x`, to the left (−1) or to the right (1) of it.
     pub(super) fn draw_side_ticks(&self, scene: &mut Scene, x: f32, side: f32, ticks: &[Tick]) {
         for tick in ticks {
             let y = self.place([0.0, tick.share])[1];
@@ -108,17 +108,17 @@ impl Area {
     }
 }
 
-/// A tick without a label is short.
+/// Returns the length of a tick: short without a label.
 fn tick_length(tick: &Tick) -> f32 {
     if tick.label.is_empty() { TICK * 0.6 } else { TICK }
 }
 
-/// Whether a point, by the shares of the axes, lies in the frame.
+/// Returns whether a point, by the shares of the axes, lies in the frame.
 pub(super) fn is_inside(point: [f64; 2]) -> bool {
     point.iter().all(|share| (-1e-6..=1.0 + 1e-6).contains(share))
 }
 
-/// The pieces of a line that lie in the frame, by the shares of the axes.
+/// Returns the pieces of a line that lie in the frame, by the shares of the axes.
 pub(super) fn clip(points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     let mut pieces: Vec<Vec<[f64; 2]>> = Vec::new();
     let mut open = false;
@@ -137,7 +137,7 @@ pub(super) fn clip(points: &[[f64; 2]]) -> Vec<Vec<[f64; 2]>> {
     pieces
 }
 
-/// The part of a segment in the unit square, after Liang and Barsky.
+/// Returns the part of a segment in the unit square, after Liang and Barsky.
 fn clip_segment(a: [f64; 2], b: [f64; 2]) -> Option<([f64; 2], [f64; 2])> {
     let (mut enter, mut leave) = (0.0f64, 1.0f64);
     for axis in 0..2 {

@@ -1,4 +1,4 @@
-//! Drawings that are no charts: what anybody puts together of lines, blocks and text.
+//! Drawings other than charts: any combination of lines, blocks and text.
 
 use super::Figure;
 use super::panel::Heading;
@@ -9,21 +9,21 @@ use std::io;
 /// The white around a drawing.
 const MARGIN: f32 = 18.0;
 
-/// Where text stands from its point.
+/// Position of text at its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TextAnchor {
-    /// It begins there.
+    /// The text begins at the point.
     Start,
-    /// Its middle is there.
+    /// The middle of the text is at the point.
     Middle,
-    /// It ends there.
+    /// The text ends at the point.
     End,
 }
 
 /// A diagram of lines, blocks, polygons and text, as SVG and as PNG, in the manner of a [`Figure`].
 ///
-/// Lengths are points of the drawing, from its top left to the right and downwards; the later lies
-/// above the earlier. The same calls make the same bytes.
+/// Lengths are points of the drawing, from its top left to the right and downwards. Later shapes
+/// lie above earlier ones. The same calls make the same bytes.
 ///
 /// ```
 /// use covmap_draw::{Drawing, Rgb, TextAnchor};
@@ -41,8 +41,8 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// A drawing of a width and a height with its title, and a smaller line under it; both may be
-    /// empty.
+    /// Creates a drawing of a width and a height, with a title and a smaller line under it; both
+    /// may be empty.
     pub fn new(title: &str, subtitle: &str, size: [f64; 2]) -> Self {
         let [width, height] = narrow(size);
         let mut scene = Scene { width, height, name: title.to_owned(), shapes: Vec::new() };
@@ -53,47 +53,47 @@ impl Drawing {
         Self { scene, top }
     }
 
-    /// The height under title and subtitle.
+    /// Returns the height under title and subtitle.
     pub fn top(&self) -> f64 {
         f64::from(self.top)
     }
 
-    /// A line through points.
+    /// Draws a line through points.
     pub fn line(&mut self, points: &[[f64; 2]], color: Rgb, width: f64) {
         self.scene.line(points.iter().copied().map(narrow).collect(), color, short(width), &[]);
     }
 
-    /// A dashed line through points.
+    /// Draws a dashed line through points.
     pub fn dashed(&mut self, points: &[[f64; 2]], color: Rgb, width: f64) {
         let points = points.iter().copied().map(narrow).collect();
         self.scene.line(points, color, short(width), &[5.0, 3.5]);
     }
 
-    /// A filled rectangle, by its upper left corner and its size.
+    /// Draws a filled rectangle, by its upper left corner and its size.
     pub fn block(&mut self, at: [f64; 2], size: [f64; 2], color: Rgb) {
         self.scene.block(narrow(at), narrow(size), color);
     }
 
-    /// The outline of a rectangle, by its upper left corner and its size.
+    /// Draws the outline of a rectangle, by its upper left corner and its size.
     pub fn frame(&mut self, at: [f64; 2], size: [f64; 2], color: Rgb, width: f64) {
         let ([left, top], [right, bottom]) = (at, [at[0] + size[0], at[1] + size[1]]);
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
         self.line(&corners, color, width);
     }
 
-    /// A filled polygon with a rim.
+    /// Draws a filled polygon with a rim.
     pub fn polygon(&mut self, corners: &[[f64; 2]], fill: Rgb, rim: Rgb, width: f64) {
         let corners = corners.iter().copied().map(narrow).collect();
         self.scene.shapes.push(Shape::Polygon { corners, fill, rim, width: short(width) });
     }
 
-    /// A filled disc with a rim.
+    /// Draws a filled disc with a rim.
     pub fn disc(&mut self, center: [f64; 2], radius: f64, fill: Rgb, rim: Rgb) {
         let (center, radius) = (narrow(center), short(radius));
         self.scene.shapes.push(Shape::Disc { center, radius, fill, rim, width: 1.0 });
     }
 
-    /// A line of text of a size, with its baseline at a point.
+    /// Writes a line of text of a size, with its baseline at a point.
     pub fn text(&mut self, text: &str, size: f64, at: [f64; 2], anchor: TextAnchor, color: Rgb) {
         let anchor = match anchor {
             TextAnchor::Start => Anchor::Start,
@@ -103,17 +103,17 @@ impl Drawing {
         self.scene.text(text, short(size), narrow(at), anchor, color);
     }
 
-    /// A line of text upwards, with its middle at a point.
+    /// Writes a line of text upwards, with its middle at a point.
     pub fn turned_text(&mut self, text: &str, size: f64, at: [f64; 2], color: Rgb) {
         self.scene.turned_text(text, short(size), narrow(at), color);
     }
 
-    /// The length of a line of text of a size.
+    /// Returns the length of a line of text of a size.
     pub fn text_width(text: &str, size: f64) -> f64 {
         f64::from(text_width(text, short(size)))
     }
 
-    /// Puts a figure in, with its upper left corner at a point; returns its size.
+    /// Places a figure with its upper left corner at a point, and returns its size.
     pub fn place(&mut self, figure: &Figure, at: [f64; 2]) -> [f64; 2] {
         let Scene { width, height, shapes, .. } = figure.lay_out();
         let at = narrow(at);
@@ -121,22 +121,22 @@ impl Drawing {
         [f64::from(width), f64::from(height)]
     }
 
-    /// The drawing as an SVG document.
+    /// Returns the drawing as an SVG document.
     pub fn to_svg(&self) -> String {
         self.scene.to_svg()
     }
 
-    /// The drawing as a PNG of twice as many pixels a side.
+    /// Returns the drawing as a PNG of twice as many pixels a side.
     ///
     /// # Errors
-    /// If it is too large for that.
+    /// If the drawing is too large for a PNG.
     pub fn to_png(&self) -> io::Result<Vec<u8>> {
         self.scene.paint().to_png()
     }
 }
 
 impl Shape {
-    /// The same elsewhere.
+    /// Returns the shape, moved to the right and down.
     fn moved(mut self, [right, down]: [f32; 2]) -> Self {
         let shift = |point: &mut [f32; 2]| *point = [point[0] + right, point[1] + down];
         match &mut self {

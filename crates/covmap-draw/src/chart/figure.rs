@@ -6,11 +6,11 @@ use super::scene::Scene;
 use super::{Figure, Panel, Series};
 
 const MARGIN: f32 = 18.0;
-/// Between panels.
+/// Gaps between panels.
 const GUTTER: [f32; 2] = [22.0, 20.0];
 const MOST_COLUMNS: usize = 12;
 
-/// The width of a panel, the height of its frame, and the sizes of title and subtitle.
+/// Returns the width of a panel, the height of its frame, and the sizes of title and subtitle.
 fn sizes(panels: usize, columns: usize) -> (f32, f32, (f32, f32)) {
     let small = (14.5, 12.0);
     match columns {
@@ -24,7 +24,7 @@ fn sizes(panels: usize, columns: usize) -> (f32, f32, (f32, f32)) {
 }
 
 impl Figure {
-    /// Finds a place for everything.
+    /// Finds a place for all panels and the legend.
     pub(super) fn lay_out(&self) -> Scene {
         let columns = self.columns.clamp(1, MOST_COLUMNS).min(self.panels.len().max(1));
         let (panel_width, frame_height, text) = sizes(self.panels.len(), columns);
@@ -70,7 +70,7 @@ impl Figure {
         scene
     }
 
-    /// What the drawing is called.
+    /// Returns the name of the drawing.
     fn name(&self) -> String {
         match self.panels.first() {
             Some(Panel::Chart(chart)) if self.title.is_empty() => chart.title.clone(),
@@ -79,8 +79,8 @@ impl Figure {
         }
     }
 
-    /// The series of all charts, if one legend can explain them: if those that look the same
-    /// are called the same, and the other way about.
+    /// Returns the series of all charts, if one legend can explain them: if series that look the
+    /// same have the same name, and the other way about.
     fn shared_series(&self) -> Option<Vec<(usize, &Series)>> {
         let mut all: Vec<(usize, &Series)> = Vec::new();
         let charts = self.panels.iter().filter_map(|panel| match panel {
@@ -103,7 +103,7 @@ impl Figure {
     }
 }
 
-/// The margins in which each of some panels has room.
+/// Returns the margins in which each of some panels has room.
 fn widest<'a>(panels: impl Iterator<Item = &'a Prepared<'a>>) -> Margins {
     panels.map(Prepared::margins).fold(Margins::default(), |a, b| Margins {
         left: a.left.max(b.left),

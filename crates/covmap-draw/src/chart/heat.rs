@@ -6,14 +6,14 @@ use super::scene::Scene;
 use super::{ColorMap, HeatMap};
 use crate::picture::Rgb;
 
-/// From the frame to the bar, and the width of the bar.
+/// Gap between the frame and the bar; `BAR` is the width of the bar.
 const BAR_GAP: f32 = 16.0;
 const BAR: f32 = 15.0;
 
-/// From where to where a cell reaches in its row, and its colour; `None` if it is not drawn.
+/// Extent of a cell in its row, and its colour; `None` if the cell is not drawn.
 type Cell = Option<([f32; 2], Rgb)>;
 
-/// Whether two neighbours in a row are drawn as one.
+/// Returns whether two neighbours in a row are drawn as one.
 fn are_joined(cell: &Cell, next: &Cell) -> bool {
     match (cell, next) {
         (Some(([_, end], color)), Some(([from, _], next))) => {
@@ -23,12 +23,12 @@ fn are_joined(cell: &Cell, next: &Cell) -> bool {
     }
 }
 
-/// To the nearest pixel of the PNG, so that cells meet without a seam.
+/// Rounds to the nearest pixel of the PNG, so that cells meet without a seam.
 fn snap(value: f32) -> f32 {
     (value * 2.0).round() / 2.0
 }
 
-/// From the frame to the far end of the labels of the bar.
+/// Returns the distance from the frame to the far end of the labels of the bar.
 pub(super) fn bar_reach(ticks: &[Tick]) -> f32 {
     BAR_GAP + BAR + reach(ticks)
 }

@@ -1,11 +1,11 @@
-//! Colours, marks and dashes by which series are told apart, and the legend that names them.
+//! Colours, marks and dashes that tell series apart, and the legend that names them.
 
 use super::Series;
 use super::scene::{Anchor, Scene, Shape, shorten};
 use crate::picture::{Rgb, text::text_width};
 
-/// The palette of Okabe and Ito, told apart by the colour-blind too; without its yellow, which
-/// is too pale for lines on white.
+/// The palette of Okabe and Ito, which the colour-blind can tell apart too; without its yellow,
+/// which is too pale for lines on white.
 const COLORS: [Rgb; 7] = [
     Rgb(0, 114, 178),
     Rgb(213, 94, 0),
@@ -15,7 +15,7 @@ const COLORS: [Rgb; 7] = [
     Rgb(86, 180, 233),
     Rgb(70, 70, 70),
 ];
-/// For lines without marks.
+/// Dashes of lines without marks.
 const DASHES: [&[f32]; 4] = [&[], &[7.0, 4.0], &[2.0, 3.0], &[9.0, 3.5, 2.0, 3.5]];
 const LINE: f32 = 2.0;
 const RADIUS: f32 = 3.6;
@@ -27,7 +27,7 @@ const GAP: f32 = 7.0;
 const BETWEEN: f32 = 22.0;
 const ROW: f32 = 21.0;
 
-/// How a series looks, by its place among the series.
+/// The look of a series, by its place among the series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Look {
     index: usize,
@@ -49,8 +49,8 @@ impl Look {
         scene.line(points, self.color(), LINE, dashes);
     }
 
-    /// Draws the mark of the series: after as many series as there are colours both the
-    /// colour and the mark begin to differ anew, since their numbers have no common divisor.
+    /// Draws the mark of the series. The numbers of colours and of marks have no common divisor, so
+    /// a colour that is used again has another mark.
     pub(super) fn draw_mark(self, scene: &mut Scene, [x, y]: [f32; 2], hollow: bool) {
         let color = self.color();
         let (fill, rim, width) =
@@ -87,10 +87,10 @@ impl Look {
     }
 }
 
-/// The names of series, with how they look.
+/// The names of series, with their looks.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(super) struct Legend {
-    /// With the place of each from the top left.
+    /// Name, look, and place from the top left of each.
     entries: Vec<(String, Look, [f32; 2])>,
     pub(super) height: f32,
 }

@@ -1,7 +1,7 @@
 //! Charts for reports: lines, points with error bars, and heat maps, as SVG and as PNG.
 //!
-//! Both are made of the same shapes, so that they look the same; letters are measured with the
-//! font that is shipped, and the same data make the same bytes.
+//! Both formats are made of the same shapes, so they look the same. Letters are measured with the
+//! shipped font, and the same data make the same bytes.
 
 mod area;
 mod drawing;
@@ -22,8 +22,8 @@ use std::path::Path;
 
 /// A chart of series of points over two axes.
 ///
-/// Points that are not finite, or beyond ±10³⁰⁰, are left out and break their line, as are
-/// values that are not positive on a logarithmic axis; a chart without points says so.
+/// Points that are not finite, or beyond ±10³⁰⁰, are left out and break their line, as are values
+/// that are not positive on a logarithmic axis. A chart without points says so.
 ///
 /// ```
 /// use covmap_draw::{Chart, ChartAxis, ChartPoint, Series};
@@ -47,15 +47,15 @@ use std::path::Path;
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Chart {
-    /// What it shows, above it; may be empty.
+    /// Title above the chart; may be empty.
     pub title: String,
-    /// A smaller line under the title: of what, how often; may be empty.
+    /// A smaller line under the title, on the data and their number; may be empty.
     pub subtitle: String,
     /// The axis to the right.
     pub x: ChartAxis,
     /// The axis upwards.
     pub y: ChartAxis,
-    /// What is drawn; the later lies above the earlier.
+    /// Series of the chart; later ones lie above earlier ones.
     pub series: Vec<Series>,
 }
 
@@ -64,50 +64,50 @@ pub struct Chart {
 pub struct ChartAxis {
     /// The quantity and its unit, such as `driven [m]`.
     pub label: String,
-    /// Where it begins; without, and if that is not finite, where the values do.
+    /// Beginning of the axis; that of the values if it is `None` or not finite.
     pub from: Option<f64>,
-    /// Where it ends; without, and if that is not finite, where the values do.
+    /// End of the axis; that of the values if it is `None` or not finite.
     pub to: Option<f64>,
     /// Whether equal lengths are equal ratios.
     pub logarithmic: bool,
-    /// What the values 1, 2, 3, … are called, instead of round numbers, on the axis to the
-    /// right of a chart; a line break in a name begins a second line.
+    /// Names of the values 1, 2, 3, … on the axis to the right of a chart, instead of round
+    /// numbers; a line break in a name begins a second line.
     pub names: Vec<String>,
 }
 
 /// Points that belong together.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Series {
-    /// Its name in the legend; without one it is not in the legend.
+    /// Name in the legend; a series without a name is not in the legend.
     pub name: String,
-    /// In the order in which a line runs through them.
+    /// Points in the order of the line through them.
     pub points: Vec<ChartPoint>,
-    /// Whether a line joins them.
+    /// Whether a line joins the points.
     pub line: bool,
-    /// Whether each has a mark.
+    /// Whether each point has a mark.
     pub marks: bool,
 }
 
 /// A point with an error bar.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct ChartPoint {
-    /// To the right.
+    /// Value to the right.
     pub x: f64,
-    /// Upwards.
+    /// Value upwards.
     pub y: f64,
-    /// The lower end of the error bar; the same as `y`, or NaN: none.
+    /// The lower end of the error bar; `y` or NaN for none.
     pub low: f64,
-    /// The upper end of the error bar; the same as `y`, or NaN: none.
+    /// The upper end of the error bar; `y` or NaN for none.
     pub high: f64,
-    /// Whether its mark is drawn hollow, for a value that is not like the others, such as that
-    /// of a run that was cut short. The subtitle should say what it means.
+    /// Whether the mark is hollow, for a value unlike the others, such as that of a run that was
+    /// cut short. The subtitle should explain hollow marks.
     pub hollow: bool,
 }
 
 /// A value over two axes as colours, such as p(c = x | d) over distance and coverage.
 #[derive(Debug, Clone, PartialEq)]
 pub struct HeatMap {
-    /// What it shows, above it; may be empty.
+    /// Title above the heat map; may be empty.
     pub title: String,
     /// A smaller line under the title; may be empty.
     pub subtitle: String,
@@ -117,15 +117,15 @@ pub struct HeatMap {
     pub y: ChartAxis,
     /// The scale of the colours.
     pub value: ChartAxis,
-    /// The edges of the columns, one more than there are; [`HeatMap::edges`] finds them from
-    /// the centres.
+    /// The edges of the columns, one more than there are columns; [`HeatMap::edges`] finds the
+    /// edges from the centres.
     pub x_edges: Vec<f64>,
-    /// The edges of the rows, one more than there are.
+    /// The edges of the rows, one more than there are rows.
     pub y_edges: Vec<f64>,
-    /// Row by row from the first pair of edges on. A cell without a value, or whose value is
-    /// not finite, stays white.
+    /// Values, row by row from the first pair of edges on. A cell whose value is missing or not
+    /// finite stays white.
     pub values: Vec<f64>,
-    /// Which colours.
+    /// Colours of the values.
     pub color_map: ColorMap,
 }
 
@@ -140,46 +140,46 @@ pub enum Panel {
 
 /// Several charts side by side.
 ///
-/// If the same name means the same series in all of them, they share one legend.
+/// The charts share one legend if the same name means the same series in all of them.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Figure {
-    /// What all of them show; may be empty.
+    /// Title of the figure; may be empty.
     pub title: String,
     /// A smaller line under the title; may be empty.
     pub subtitle: String,
-    /// Row by row from the top left.
+    /// Panels, row by row from the top left.
     pub panels: Vec<Panel>,
-    /// How many stand side by side: 1 to 12; any other number counts as the nearest of these.
+    /// Number of panels side by side: 1 to 12; any other number counts as the nearest of these.
     pub columns: usize,
 }
 
 impl ChartAxis {
-    /// A linear axis as long as its values need.
+    /// Returns a linear axis as long as its values need.
     pub fn new(label: impl Into<String>) -> Self {
         Self { label: label.into(), ..Self::default() }
     }
 
-    /// An axis of things that have names: the values 1, 2, 3, …
+    /// Returns an axis of things that have names: the values 1, 2, 3, …
     pub fn named(label: impl Into<String>, names: Vec<String>) -> Self {
         let to = names.len() as f64 + 0.5;
         Self { from: Some(0.5), to: Some(to), names, ..Self::new(label) }
     }
 
-    /// A logarithmic axis as long as its values need.
+    /// Returns a logarithmic axis as long as its values need.
     pub fn logarithmic(label: impl Into<String>) -> Self {
         Self { logarithmic: true, ..Self::new(label) }
     }
 }
 
 impl ChartPoint {
-    /// A point without an error bar.
+    /// Returns a point without an error bar.
     pub fn new(x: f64, y: f64) -> Self {
         Self { x, y, low: y, high: y, hollow: false }
     }
 }
 
 impl HeatMap {
-    /// The edges of cells with these centres: half-way between two of them.
+    /// Returns the edges of cells with these centres: half-way between two centres.
     pub fn edges(centers: &[f64]) -> Vec<f64> {
         let step = |a: usize, b: usize| (centers[b] - centers[a]) / 2.0;
         match centers.len() {
@@ -212,15 +212,15 @@ impl Figure {
         Self { panels: vec![panel.into()], columns: 1, ..Self::default() }
     }
 
-    /// The figure as an SVG document.
+    /// Returns the figure as an SVG document.
     pub fn to_svg(&self) -> String {
         self.lay_out().to_svg()
     }
 
-    /// The figure as a PNG of twice as many pixels a side.
+    /// Returns the figure as a PNG of twice as many pixels a side.
     ///
     /// # Errors
-    /// If it is too large for that.
+    /// If the figure is too large for a PNG.
     pub fn to_png(&self) -> io::Result<Vec<u8>> {
         self.lay_out().paint().to_png()
     }
@@ -238,7 +238,7 @@ impl Figure {
 }
 
 impl Chart {
-    /// The chart as an SVG document.
+    /// Returns the chart as an SVG document.
     pub fn to_svg(&self) -> String {
         Figure::of(self.clone()).to_svg()
     }
@@ -253,7 +253,7 @@ impl Chart {
 }
 
 impl HeatMap {
-    /// The heat map as an SVG document.
+    /// Returns the heat map as an SVG document.
     pub fn to_svg(&self) -> String {
         Figure::of(self.clone()).to_svg()
     }

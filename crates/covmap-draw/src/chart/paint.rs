@@ -6,13 +6,13 @@ use crate::picture::canvas::Canvas;
 use crate::picture::text::{text_path, text_width};
 use tiny_skia::{Path, PathBuilder, Transform};
 
-/// The pixels of a point of the drawing.
+/// Number of pixels of a point of the drawing.
 const SCALE: f32 = 2.0;
 /// The longest side of an image \[pixels\]; a larger drawing is made smaller.
 const LONGEST: f32 = 8000.0;
 
 impl Scene {
-    /// The drawing as an image.
+    /// Returns the drawing as an image.
     #[allow(clippy::cast_possible_truncation, reason = "≤ 8000")]
     pub(super) fn paint(&self) -> Canvas {
         let scale = SCALE.min(LONGEST / self.width.max(self.height).max(1.0));

@@ -1,4 +1,4 @@
-//! One panel of a figure: what it needs around its frame, and how it is drawn.
+//! One panel of a figure: the room around its frame, and its drawing.
 
 use super::area::{Area, clip, is_inside, reach, reach_below, room_across, room_upwards, widest};
 use super::heat::{bar_reach, draw_bar};
@@ -9,7 +9,7 @@ use super::{Chart, ChartAxis, HeatMap, Panel};
 use crate::picture::Rgb;
 
 const LABEL_SIZE: f32 = 13.0;
-/// What the name of an axis takes beside the labels of its ticks.
+/// Room for the name of an axis beside the labels of its ticks.
 const LABEL_ROW: f32 = 24.0;
 
 /// Lines of text above a panel or a figure.
@@ -40,7 +40,7 @@ impl Heading {
     }
 }
 
-/// What stands around the frame of a panel.
+/// Room around the frame of a panel.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Margins {
     pub(super) left: f32,
@@ -58,9 +58,9 @@ pub(super) struct Prepared<'a> {
     x: Scale,
     y: Scale,
     y_ticks: Vec<Tick>,
-    /// How far a label of the x axis may reach beyond the end of the axis.
+    /// Length by which a label of the x axis may reach beyond the end of the axis.
     overhang: f32,
-    /// From the x axis to the lower end of its labels.
+    /// Distance from the x axis to the lower end of its labels.
     below: f32,
     /// The scale of the colours, if there are any.
     value: Option<(Scale, Vec<Tick>)>,
@@ -74,7 +74,7 @@ impl Panel {
         }
     }
 
-    /// The axes to the right and upwards.
+    /// Returns the axes to the right and upwards.
     fn axes(&self) -> (&ChartAxis, &ChartAxis) {
         match self {
             Self::Chart(chart) => (&chart.x, &chart.y),
@@ -82,7 +82,7 @@ impl Panel {
         }
     }
 
-    /// What is written at the axis to the right, of a length: names, or round numbers.
+    /// Returns the ticks of the axis to the right, of a length: names, or round numbers.
     fn x_ticks(&self, x: &Scale, length: f32) -> Vec<Tick> {
         let (axis, _) = self.axes();
         if axis.names.is_empty() {
@@ -95,7 +95,7 @@ impl Panel {
         axis.names.iter().enumerate().filter_map(tick).collect()
     }
 
-    /// Chooses the axes and what is written beside a frame of a height, in a panel of a width.
+    /// Chooses the axes and the labels beside a frame of a height, in a panel of a width.
     pub(super) fn prepare(
         &self,
         (title_size, subtitle_size): (f32, f32),
@@ -122,7 +122,7 @@ impl Panel {
         };
         let heading = Heading::new((title, title_size), (subtitle, subtitle_size), width);
         let y_ticks = y.ticks(height, room_upwards);
-        // Half of a label, some of which may reach into the white between panels.
+        // Half of a label; a part of it may reach into the white between panels.
         let x_ticks = self.x_ticks(&x, width);
         let overhang = widest(&x_ticks) / 2.0 - 6.0;
         let below = reach_below(&x_ticks);
@@ -131,7 +131,7 @@ impl Panel {
 }
 
 impl Chart {
-    /// The axes, as long as all points need; upwards, as those need that are seen.
+    /// Returns the axes. The axis to the right holds all points; the axis upwards holds the visible ones.
     fn scales(&self) -> (Scale, Scale) {
         let points = || self.series.iter().flat_map(|series| &series.points);
         let x = Scale::new(&self.x, points().map(|point| point.x), true);
@@ -214,7 +214,7 @@ impl Prepared<'_> {
         }
     }
 
-    /// Draws the panel with its top left corner at a point. The margins are at least its own.
+    /// Draws the panel with its top left corner at a point. `margins` are at least those of the panel.
     pub(super) fn draw(
         &self,
         scene: &mut Scene,

@@ -1,11 +1,11 @@
-//! An axis: which values it shows, where each lies on it, and which are written beside it.
+//! An axis: its values, their places on it, and the labels beside it.
 
 use super::ChartAxis;
 use crate::picture::furniture::{round_down, short};
 
-/// What is farther from 0 than this is not drawn: differences of such numbers overflow.
+/// Numbers farther from 0 than this are not drawn: their differences overflow.
 const LARGEST: f64 = 1e300;
-/// What is nearer to 0 than this has no place on a logarithmic axis.
+/// Numbers nearer to 0 than this have no place on a logarithmic axis.
 const SMALLEST: f64 = 1e-300;
 /// The white between the outermost values and the ends of the axis, as a share of it.
 const PADDING: f64 = 0.04;
@@ -29,8 +29,8 @@ pub(super) struct Tick {
 }
 
 impl Scale {
-    /// The scale of an axis that is to show these values. `padded` leaves some white at ends
-    /// that the axis does not fix.
+    /// Returns the scale of an axis that is to show these values. `padded` leaves some white at
+    /// ends that the axis does not fix.
     pub(super) fn new(axis: &ChartAxis, values: impl Iterator<Item = f64>, padded: bool) -> Self {
         let logarithmic = axis.logarithmic;
         let usable = |value: &f64| is_drawable(*value, logarithmic);
@@ -72,7 +72,7 @@ impl Scale {
         }
     }
 
-    /// Leaves white at the ends, but not beyond zero where no value is.
+    /// Leaves white at the ends, but not beyond zero if no value lies there.
     fn pad(&mut self, low: bool, high: bool) {
         let (from, to) = (self.from, self.to);
         if self.logarithmic {
@@ -90,8 +90,8 @@ impl Scale {
         }
     }
 
-    /// The share of the way along the axis at which a value lies, beyond \[0, 1\] if it is not
-    /// on it; `None` if it can have no place.
+    /// Returns the share of the way along the axis at which a value lies, outside \[0, 1\] for a
+    /// value beyond the axis; `None` for a value that can have no place.
     pub(super) fn share(&self, value: f64) -> Option<f64> {
         is_drawable(value, self.logarithmic).then(|| {
             let share = if self.logarithmic {
@@ -104,7 +104,7 @@ impl Scale {
         })
     }
 
-    /// The share at which the edge of a cell is drawn, in \[0, 1\]; a logarithmic axis has
+    /// Returns the share at which the edge of a cell is drawn, in \[0, 1\]; a logarithmic axis has
     /// zero at its beginning.
     pub(super) fn edge(&self, value: f64) -> Option<f64> {
         let share = self.share(value);
@@ -112,14 +112,14 @@ impl Scale {
         share.or(below.then_some(0.0)).map(|share| share.clamp(0.0, 1.0))
     }
 
-    /// The value at a share of the way along the axis.
+    /// Returns the value at a share of the way along the axis.
     #[cfg(test)]
     fn value(&self, share: f64) -> f64 {
         self.from + share * (self.to - self.from)
     }
 
-    /// Round values on an axis of a length, as many as can be written side by side when a
-    /// label takes `room` of its length.
+    /// Returns round values on an axis of a length: as many as fit side by side if a label takes
+    /// `room` of the length.
     pub(super) fn ticks(&self, length: f32, room: impl Fn(&str) -> f32) -> Vec<Tick> {
         if self.logarithmic && self.decades() >= 0.7 {
             self.decade_ticks(f64::from(length), room)
@@ -132,7 +132,7 @@ impl Scale {
         libm::log10(self.to) - libm::log10(self.from)
     }
 
-    /// Multiples of a round step.
+    /// Returns the multiples of a round step.
     fn step_ticks(&self, length: f64, room: impl Fn(&str) -> f32) -> Vec<Tick> {
         let span = self.to - self.from;
         let mut step = round_down(span / 5.0);
@@ -155,7 +155,7 @@ impl Scale {
         })
     }
 
-    /// Powers of ten and round numbers between them.
+    /// Returns powers of ten and round numbers between them.
     fn decade_ticks(&self, length: f64, room: impl Fn(&str) -> f32) -> Vec<Tick> {
         let dense: [&[i32]; 4] = [&[1, 2, 3, 4, 5, 6, 7, 8, 9], &[1, 2, 5], &[1, 3], &[1]];
         let dense = dense.into_iter().map(|digits| (digits, 1));
@@ -199,12 +199,12 @@ impl Scale {
     }
 }
 
-/// Whether a value can lie on an axis at all.
+/// Returns whether a value can lie on an axis at all.
 fn is_drawable(value: f64, logarithmic: bool) -> bool {
     value.abs() <= LARGEST && (!logarithmic || value >= SMALLEST)
 }
 
-/// Whether the labels stand side by side with room around each.
+/// Returns whether the labels stand side by side with room around each.
 fn fits(ticks: &[Tick], length: f64, room: impl Fn(&str) -> f32) -> bool {
     ticks.windows(2).all(|pair| {
         let needed = room(&pair[0].label).midpoint(room(&pair[1].label));
@@ -216,7 +216,7 @@ fn with_minus(number: &str) -> String {
     number.replace('-', "−")
 }
 
-/// A number as short as it is exact to its steps, among numbers up to a size.
+/// Formats a number with the digits that its steps need, among numbers up to a size.
 fn number(value: f64, step: f64, size: f64) -> String {
     if (1e-4..1e7).contains(&size) && step > 1e-9 {
         return short(value, step);

@@ -1,8 +1,8 @@
-//! A drawing as a list of shapes, of which both the SVG and the PNG are made.
+//! A drawing as a list of shapes; the SVG and the PNG are made of the same list.
 
 use crate::picture::{Rgb, text::text_width};
 
-/// Where text stands from its point.
+/// Position of text at its point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Anchor {
     Start,
@@ -10,7 +10,7 @@ pub(super) enum Anchor {
     End,
 }
 
-/// Something to be drawn; lengths in points of the drawing, from its top left.
+/// A shape; lengths in points of the drawing, from its top left.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Shape {
     /// A line, drawn and left out in turn for the lengths of `dashes` if there are any.
@@ -30,18 +30,18 @@ pub(super) enum Shape {
 pub(super) struct Scene {
     pub(super) width: f32,
     pub(super) height: f32,
-    /// What it is called where it cannot be seen.
+    /// Name of the drawing where it cannot be seen.
     pub(super) name: String,
     pub(super) shapes: Vec<Shape>,
 }
 
 impl Scene {
-    /// A thin straight line.
+    /// Draws a thin straight line.
     pub(super) fn rule(&mut self, from: [f32; 2], to: [f32; 2], color: Rgb) {
         self.line(vec![from, to], color, 1.0, &[]);
     }
 
-    /// A thin outline of a rectangle.
+    /// Draws a thin outline of a rectangle.
     pub(super) fn frame(&mut self, [left, top]: [f32; 2], [width, height]: [f32; 2], color: Rgb) {
         let (right, bottom) = (left + width, top + height);
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom], [left, top]];
@@ -75,8 +75,8 @@ impl Scene {
     }
 }
 
-/// A text in lines of at most a width, and at most a number of them; what does not fit is
-/// cut off with an ellipsis.
+/// Splits a text into at most `most` lines of at most a width. Text that does not fit is cut off
+/// with an ellipsis.
 pub(super) fn wrap(text: &str, size: f32, width: f32, most: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split_whitespace() {
@@ -96,7 +96,7 @@ pub(super) fn wrap(text: &str, size: f32, width: f32, most: usize) -> Vec<String
     lines.iter().map(|line| shorten(line, size, width)).collect()
 }
 
-/// A text as far as it has room.
+/// Shortens a text to a width, with an ellipsis.
 pub(super) fn shorten(text: &str, size: f32, width: f32) -> String {
     if text_width(text, size) <= width {
         return text.to_string();

@@ -4,11 +4,11 @@ use super::scene::{Anchor, Scene, Shape};
 use crate::picture::Rgb;
 use std::fmt::Write;
 
-/// The family that the layout is measured with, ones as wide, and whatever there is.
+/// The font that the layout is measured with, then fonts as wide, then any font.
 const FAMILY: &str = "'DejaVu Sans', Verdana, sans-serif";
 
 impl Scene {
-    /// The drawing as an SVG document, in which text stays text.
+    /// Returns the drawing as an SVG document, in which text stays text.
     pub(super) fn to_svg(&self) -> String {
         let (width, height) = (number(self.width), number(self.height));
         let mut svg = format!(
@@ -93,7 +93,7 @@ fn hex(Rgb(r, g, b): Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// A length to a hundredth.
+/// Formats a length to a hundredth.
 fn number(value: f32) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
@@ -106,7 +106,7 @@ fn list(points: &[[f32; 2]]) -> String {
     points.join(" ")
 }
 
-/// Text as XML allows it.
+/// Returns text as XML allows it.
 fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {

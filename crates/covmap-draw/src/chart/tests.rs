@@ -1,4 +1,4 @@
-//! What a chart promises.
+//! Promises of charts.
 
 use super::scene::{Anchor, Scene, Shape};
 use super::*;
@@ -158,7 +158,7 @@ fn figures_of_any_number_of_panels_are_drawn() {
     }
 }
 
-/// Whether a shape is drawn within the drawing.
+/// Returns whether a shape is drawn within the drawing.
 fn lies_in(shape: &Shape, scene: &Scene) -> bool {
     let inside =
         |[x, y]: &[f32; 2]| (0.0..=scene.width).contains(x) && (0.0..=scene.height).contains(y);

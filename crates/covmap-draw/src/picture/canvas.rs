@@ -10,10 +10,10 @@ use tiny_skia::{
     StrokeDash, Transform,
 };
 
-/// The widest line [pixels].
+/// The widest line \[pixels\].
 const WIDEST: f32 = 1e4;
 
-/// An image that is drawn on; points in pixels from the top left.
+/// An image to draw on; points in pixels from the top left.
 #[derive(Debug, Clone)]
 pub(crate) struct Canvas(Pixmap);
 
@@ -26,7 +26,7 @@ fn paint(color: Rgb, opacity: f32) -> Paint<'static> {
 }
 
 impl Canvas {
-    /// A canvas of one colour. Sides of 0 count as 1.
+    /// Creates a canvas of one colour. Sides of 0 count as 1.
     pub(crate) fn new(width: u32, height: u32, color: Rgb) -> Self {
         let pixmap = Pixmap::new(width.max(1), height.max(1));
         let mut pixmap = pixmap.expect("a few thousand pixels a side");
@@ -42,12 +42,12 @@ impl Canvas {
         self.0.height()
     }
 
-    /// The pixels row by row from the top: red, green, blue.
+    /// Returns the pixels row by row from the top: red, green, blue.
     pub(crate) fn rgb(&self) -> Vec<u8> {
         self.0.data().chunks_exact(4).flat_map(|pixel| [pixel[0], pixel[1], pixel[2]]).collect()
     }
 
-    /// The image as a PNG.
+    /// Returns the image as a PNG.
     pub(crate) fn to_png(&self) -> io::Result<Vec<u8>> {
         let mut bytes = Vec::new();
         let mut encoder = png::Encoder::new(&mut bytes, self.width(), self.height());
@@ -90,7 +90,7 @@ impl Canvas {
         }
     }
 
-    /// Draws along a path, at most as wide as a picture; nothing if its width is no number.
+    /// Draws along a path, at most [`WIDEST`] wide; nothing if the width is negative or no number.
     pub(crate) fn stroke(&mut self, path: Option<Path>, color: Rgb, width: f32, opacity: f32) {
         if let Some(path) = path.filter(|_| width >= 0.0) {
             let width = width.min(WIDEST);
@@ -100,7 +100,7 @@ impl Canvas {
         }
     }
 
-    /// Draws along a path with dashes: the lengths drawn and left out in turn \[pixels\].
+    /// Draws along a path with dashes: `dashes` has the lengths drawn and left out in turn \[pixels\].
     pub(crate) fn dash(&mut self, path: Option<Path>, color: Rgb, width: f32, dashes: &[f32]) {
         if let Some(path) = path {
             let dash = StrokeDash::new(dashes.to_vec(), 0.0);
@@ -121,8 +121,7 @@ impl Canvas {
         self.stroke(rect.map(PathBuilder::from_rect), color, 1.0, 1.0);
     }
 
-    /// Draws a line through points; a single point is a dot. Points that are not finite
-    /// break it.
+    /// Draws a line through points; a single point is a dot. Points that are not finite break the line.
     pub(crate) fn polyline(&mut self, points: &[[f32; 2]], color: Rgb, width: f32, opacity: f32) {
         let mut path = PathBuilder::new();
         for piece in points.split(|p| !p.iter().all(|v| v.is_finite())) {
@@ -137,7 +136,7 @@ impl Canvas {
         self.stroke(path.finish(), color, width, opacity);
     }
 
-    /// Draws a marker of a diameter, with a light rim, so that it is seen on any ground.
+    /// Draws a marker of a diameter, with a light rim that makes it visible on any ground.
     pub(crate) fn marker(&mut self, [x, y]: [f32; 2], marker: Marker, color: Rgb, size: f32) {
         let radius = size / 2.0;
         let line = (size / 6.0).max(2.0);
@@ -173,7 +172,7 @@ impl Canvas {
         }
     }
 
-    /// Writes text from `x` on; with a halo if it stands on a picture.
+    /// Writes text from `x` on; with a halo for text on a picture.
     pub(crate) fn text(
         &mut self,
         text: &str,
@@ -190,7 +189,7 @@ impl Canvas {
     }
 }
 
-/// An arrow head with a notch, centred at a point; `heading` is counter-clockwise, y up.
+/// Returns an arrow head with a notch, centred at a point; `heading` is counter-clockwise, y up.
 fn arrow(x: f32, y: f32, heading: f64, radius: f32) -> Option<Path> {
     let (sin, cos) = libm::sincos(heading);
     #[allow(clippy::cast_possible_truncation, reason = "pixels")]

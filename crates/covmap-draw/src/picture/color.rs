@@ -15,18 +15,18 @@ impl Rgb {
     pub(crate) const GREY_INK: Rgb = Rgb(92, 102, 114);
     /// A lighter grey: for the frames of scales and charts.
     pub(crate) const FRAME: Rgb = Rgb(120, 130, 142);
-    /// A light blue-grey: what nobody knows.
+    /// A light blue-grey: for unknown cells.
     pub const UNKNOWN: Rgb = Rgb(198, 211, 226);
-    /// A strong blue: where a robot drove.
+    /// A strong blue: for the path of a robot.
     pub const BLUE: Rgb = Rgb(28, 98, 184);
-    /// A strong orange: what is being looked at.
+    /// A strong orange: for the place under consideration.
     pub const ORANGE: Rgb = Rgb(230, 126, 22);
-    /// A strong green: where something begins.
+    /// A strong green: for a beginning.
     pub const GREEN: Rgb = Rgb(38, 142, 76);
-    /// A strong red: where something ends.
+    /// A strong red: for an end.
     pub const RED: Rgb = Rgb(204, 50, 46);
 
-    /// The colour at `t` in [0, 1] on the way from this one to another.
+    /// Returns the colour at `t` in [0, 1] on the way from this one to another.
     #[must_use]
     pub fn mix(self, other: Rgb, t: f64) -> Rgb {
         let t = if t.is_nan() { 0.0 } else { t.clamp(0.0, 1.0) };
@@ -86,7 +86,7 @@ const DIVERGING: [Rgb; 5] = [
 ];
 
 impl ColorMap {
-    /// The colour at `t`; below 0 that of 0, above 1 that of 1, for NaN [`Rgb::UNKNOWN`].
+    /// Returns the colour at `t`; below 0 that of 0, above 1 that of 1, and for NaN [`Rgb::UNKNOWN`].
     pub fn color(self, t: f64) -> Rgb {
         let anchors: &[Rgb] = match self {
             Self::Viridis => &VIRIDIS,
@@ -108,8 +108,8 @@ impl ColorMap {
     }
 }
 
-/// The colour of a coverage: white where a cell is free, black where it is full, and
-/// [`Rgb::UNKNOWN`], which is no grey, where it is not known.
+/// Returns the colour of a coverage: white for a free cell, black for a full one, and
+/// [`Rgb::UNKNOWN`], which is no grey, for an unknown one.
 pub fn coverage_color(coverage: Option<f64>) -> Rgb {
     coverage.map_or(Rgb::UNKNOWN, |coverage| ColorMap::Grey.color(coverage))
 }

@@ -1,4 +1,4 @@
-//! What stands under a map: scale bar, colour bar, and legend.
+//! The items under a map: scale bar, colour bar, and legend.
 
 use super::canvas::Canvas;
 use super::color::Rgb;
@@ -10,7 +10,7 @@ pub(super) const MARGIN: f32 = 32.0;
 const SIZE: f32 = 16.0;
 const SWATCH: f32 = 18.0;
 const ROW: f32 = 30.0;
-/// Between a row of one kind and the next \[pixels\].
+/// Gap between a row of one kind and the next \[pixels\].
 const BREAK: f32 = 18.0;
 
 enum Item<'a> {
@@ -19,21 +19,20 @@ enum Item<'a> {
     Key { key: Key, text: &'a str },
 }
 
-/// What stands under the map, with the top left corner of each from that of the map's lower
-/// left corner \[pixels\].
+/// The items under the map. Each has its top left corner, from the map's lower left corner \[pixels\].
 pub(super) struct Furniture<'a> {
     items: Vec<(Item<'a>, [f32; 2])>,
     height: f32,
 }
 
-/// The step of the round lengths 1, 2, 5, 10, 20, … that is the largest up to `most`.
+/// Returns the largest of the round lengths 1, 2, 5, 10, 20, … up to `most`.
 pub(crate) fn round_down(most: f64) -> f64 {
     let decade = libm::pow(10.0, libm::floor(libm::log10(most)));
     let factor = [5.0, 2.0].into_iter().find(|factor| factor * decade <= most * (1.0 + 1e-9));
     factor.unwrap_or(1.0) * decade
 }
 
-/// A number as short as it is exact to its steps.
+/// Formats a number with the digits that its steps need.
 pub(crate) fn short(value: f64, step: f64) -> String {
     let decimals = (-libm::floor(libm::log10(step) + 1e-9)).clamp(0.0, 9.0);
     #[allow(clippy::cast_possible_truncation, reason = "0 to 9")]
@@ -56,7 +55,7 @@ fn length_name(metres: f64) -> String {
 }
 
 impl<'a> Furniture<'a> {
-    /// Finds a place for everything in a given width.
+    /// Finds a place for all items in a given width.
     pub(super) fn lay_out(picture: &'a Picture, width: f32) -> Self {
         let mut items = Vec::new();
         let mut y = 0.0;
@@ -98,12 +97,12 @@ impl<'a> Furniture<'a> {
         Self { items, height: y }
     }
 
-    /// The height of everything \[pixels\].
+    /// Returns the height of all items \[pixels\].
     pub(super) fn height(&self) -> f32 {
         self.height
     }
 
-    /// Draws everything from a line of the picture down.
+    /// Draws all items from a line of the picture down.
     pub(super) fn draw(&self, canvas: &mut Canvas, top: f32) {
         for (item, [x, y]) in &self.items {
             let at = [(MARGIN + x).round(), (top + y).round()];
@@ -116,7 +115,7 @@ impl<'a> Furniture<'a> {
     }
 }
 
-/// The baseline of text in the middle of a row of swatches.
+/// Returns the baseline of text in the middle of a row of swatches.
 fn baseline(top: f32) -> f32 {
     top + (SWATCH + SIZE * CAP_HEIGHT) / 2.0
 }
@@ -149,8 +148,8 @@ fn color_bar(canvas: &mut Canvas, [x, y]: [f32; 2], bar: &ColorBar, width: f32) 
     }
 }
 
-/// The ends of a range and the round values between them, with the share of the way at which
-/// each lies. A round value that would stand too near to an end is left out.
+/// Returns the ends of a range and the round values between them, with the share of the way of
+/// each. A round value too near to an end is left out.
 fn ticks(low: f64, high: f64) -> Vec<(f64, String)> {
     let span = high - low;
     if !(span.is_finite() && span > 0.0 && low.abs() < 1e12 * span) {

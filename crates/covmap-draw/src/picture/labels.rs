@@ -1,4 +1,4 @@
-//! Where labels stand, so that they can be read.
+//! Placement of legible labels.
 
 use super::text::{CAP_HEIGHT, text_width};
 
@@ -10,8 +10,8 @@ const PADDING: f32 = 4.0;
 /// A rectangle of pixels: left, top, right, bottom.
 type Area = [f32; 4];
 
-/// The beginning of the baseline of each label: beside its point, inside the map, and where it
-/// covers the least of points and of labels before it.
+/// Returns the beginning of the baseline of each label. A label stands beside its point, inside the
+/// map, where it covers the least of points and of earlier labels.
 pub(super) fn place_labels<'a>(
     labels: &[(&'a str, [f32; 2])],
     size: f32,
@@ -44,7 +44,7 @@ pub(super) fn place_labels<'a>(
     placed
 }
 
-/// The top left corners that a label of a size may have: right of its point first, then the
+/// Returns the top left corners that a label of a size may have: right of its point first, then the
 /// others round it.
 fn corners([x, y]: [f32; 2], w: f32, h: f32) -> [[f32; 2]; 8] {
     let (right, left, middle) = (x + GAP, x - GAP - w, x - w / 2.0);
@@ -61,7 +61,7 @@ fn corners([x, y]: [f32; 2], w: f32, h: f32) -> [[f32; 2]; 8] {
     ]
 }
 
-/// The area that two rectangles have in common \[square pixels\].
+/// Returns the area that two rectangles have in common \[square pixels\].
 fn common(a: &Area, b: &Area) -> f32 {
     let width = a[2].min(b[2]) - a[0].max(b[0]);
     let height = a[3].min(b[3]) - a[1].max(b[1]);

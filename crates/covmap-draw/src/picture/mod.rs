@@ -15,12 +15,12 @@ use nalgebra::Point2;
 use std::io;
 use std::path::Path;
 
-/// The longest side of a map in a picture that is chosen by itself \[pixels\].
+/// The longest side of a map in a picture by default \[pixels\].
 const USUAL_SIDE: usize = 1200;
 /// The longest side of a map in any picture \[pixels\].
 const LARGEST_SIDE: usize = 3600;
 
-/// What stands for a point.
+/// The symbol of a point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Marker {
     /// A filled disc.
@@ -31,12 +31,12 @@ pub enum Marker {
     Cross,
     /// An arrow head.
     Arrow {
-        /// Where it points \[rad\], counter-clockwise from the x axis.
+        /// Direction of the arrow \[rad\], counter-clockwise from the x axis.
         heading: f64,
     },
 }
 
-/// What a word of the legend explains.
+/// The symbol that an entry of the legend explains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Key {
     /// Cells of a colour.
@@ -64,8 +64,8 @@ struct ColorBar {
 /// A picture of a map: coloured cells, with lines, markers and labels over them, and a title,
 /// a scale bar and a legend around it.
 ///
-/// Points are in the world \[m\], x to the right and y up; widths and sizes in pixels. What is
-/// added later lies above what was added before; labels lie on top.
+/// Points are in the world \[m\], x to the right and y up; widths and sizes in pixels. Later items
+/// lie above earlier ones; labels lie on top.
 ///
 /// ```no_run
 /// use covmap::{Grid, Raster};
@@ -91,7 +91,7 @@ pub struct Picture {
     grid: Grid,
     colors: Vec<Rgb>,
     pixels_per_cell: usize,
-    /// How many cells a side are one pixel: 1, or more where a map is too large.
+    /// Number of cells a side that share one pixel: 1, or more where a map is too large.
     cells_per_pixel: usize,
     overlays: Vec<Overlay>,
     labels: Vec<(String, Point2<f64>)>,
@@ -103,8 +103,8 @@ pub struct Picture {
 }
 
 impl Picture {
-    /// A white picture of a grid, with as many pixels for a cell as make its longer side
-    /// about 1200 pixels. Of a grid that is larger than that several cells share a pixel.
+    /// Creates a white picture of a grid. A cell has as many pixels as make the longer side of the
+    /// grid about 1200 pixels; in a larger grid several cells share a pixel.
     pub fn new(grid: Grid) -> Self {
         let side = grid.width().max(grid.height());
         Self {
@@ -122,8 +122,7 @@ impl Picture {
         }
     }
 
-    /// Draws every cell with this many pixels a side instead; fewer, where the picture would
-    /// be larger than 3600 pixels.
+    /// Sets the number of pixels of a cell's side; fewer, where the picture would be larger than 3600 pixels.
     pub fn pixels_per_cell(&mut self, pixels: usize) -> &mut Self {
         let side = self.grid.width().max(self.grid.height());
         self.pixels_per_cell = pixels.clamp(1, (LARGEST_SIDE / side).max(1));
@@ -131,14 +130,14 @@ impl Picture {
         self
     }
 
-    /// Colours the cells. The raster may have another grid: each cell takes the colour that
-    /// the raster has at its centre, and keeps its own outside of the raster.
+    /// Colours the cells. The raster may have another grid: each cell takes the colour of the
+    /// raster at its centre, and keeps its own outside the raster.
     pub fn cells<T>(&mut self, raster: &Raster<T>, color: impl Fn(&T) -> Rgb) -> &mut Self {
         self.overlay(raster, 1.0, |value| Some(color(value)))
     }
 
-    /// Colours cells over what they show already, as [`Self::cells`] does, but only where there
-    /// is a colour, and only so far as `opacity` in [0, 1] says.
+    /// Colours cells over their present colours, as [`Self::cells`] does, but only where there is a
+    /// colour, and only as far as `opacity` in [0, 1] says.
     pub fn overlay<T>(
         &mut self,
         raster: &Raster<T>,
@@ -160,8 +159,8 @@ impl Picture {
         self
     }
 
-    /// Draws a line through points. A point that is not finite breaks it; a single one is a dot.
-    /// Of a width that is no number, or negative, nothing is seen.
+    /// Draws a line through points. A point that is not finite breaks the line; a single point is a
+    /// dot. A line with a width that is negative or no number is not drawn.
     pub fn polyline(&mut self, points: &[Point2<f64>], color: Rgb, width: f64) -> &mut Self {
         self.overlays.push(Overlay::Line { points: points.to_vec(), color, width });
         self
@@ -179,7 +178,7 @@ impl Picture {
         self
     }
 
-    /// Writes a word beside a point, where it meets no other word and stays in the map.
+    /// Writes a label beside a point, where it meets no other label and stays in the map.
     pub fn label(&mut self, text: &str, at: Point2<f64>) -> &mut Self {
         self.labels.push((text.to_string(), at));
         self
@@ -217,9 +216,8 @@ impl Picture {
         self
     }
 
-    /// Draws a bar of colours under the map, from the value `low` to the value `high`, with
-    /// `color` of the share in [0, 1] of the way from one to the other. The title should name
-    /// the quantity and its unit.
+    /// Draws a bar of colours under the map, from the value `low` to the value `high`. `color` takes the
+    /// share in [0, 1] of the way from `low` to `high`. The title should name the quantity and its unit.
     pub fn color_bar(
         &mut self,
         title: &str,
@@ -232,17 +230,17 @@ impl Picture {
         self
     }
 
-    /// The picture as pixels: its width, its height, and red, green and blue of each, row by
-    /// row from the top.
+    /// Returns the picture as pixels: its width, its height, and red, green and blue of each pixel,
+    /// row by row from the top.
     pub fn pixels(&self) -> (u32, u32, Vec<u8>) {
         let canvas = self.render();
         (canvas.width(), canvas.height(), canvas.rgb())
     }
 
-    /// The picture as a PNG.
+    /// Returns the picture as a PNG.
     ///
     /// # Errors
-    /// If it is too large for that.
+    /// If the picture is too large for a PNG.
     pub fn to_png(&self) -> io::Result<Vec<u8>> {
         self.render().to_png()
     }

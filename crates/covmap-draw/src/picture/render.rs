@@ -1,4 +1,4 @@
-//! From a picture to its pixels.
+//! The pixels of a picture.
 
 use super::canvas::Canvas;
 use super::color::Rgb;
@@ -7,19 +7,19 @@ use super::labels::place_labels;
 use super::{Overlay, Picture};
 use nalgebra::Point2;
 
-/// The least width of what stands under a map \[pixels\].
+/// The least width of the items under a map \[pixels\].
 const LEAST_WIDTH: usize = 560;
 const TITLE_SIZE: f32 = 26.0;
 const SUBTITLE_SIZE: f32 = 17.0;
 const LABEL_SIZE: f32 = 17.0;
 
 impl Picture {
-    /// The pixels of a metre.
+    /// Returns the number of pixels of a metre.
     pub(super) fn scale(&self) -> f64 {
         self.pixels_per_cell as f64 / (self.cells_per_pixel as f64 * self.grid.resolution())
     }
 
-    /// The pixel of the map at which a point of the world lies.
+    /// Returns the pixel of the map at which a point of the world lies.
     #[allow(clippy::cast_possible_truncation, reason = "pixels")]
     fn to_pixel(&self, point: Point2<f64>) -> [f32; 2] {
         let from = point - self.grid.lower_left();
@@ -27,7 +27,7 @@ impl Picture {
         [(from.x * self.scale()) as f32, ((top - from.y) * self.scale()) as f32]
     }
 
-    /// The whole picture.
+    /// Draws the whole picture.
     #[allow(clippy::cast_possible_truncation, reason = "a few thousand pixels")]
     pub(super) fn render(&self) -> Canvas {
         let map = self.render_map();
@@ -60,7 +60,7 @@ impl Picture {
         canvas
     }
 
-    /// The map alone, with all that lies on it.
+    /// Draws the map alone, with all overlays and labels.
     fn render_map(&self) -> Canvas {
         let mut canvas = self.render_cells();
         for overlay in &self.overlays {
@@ -110,7 +110,7 @@ impl Picture {
     }
 }
 
-/// The size at which text is at most so wide.
+/// Returns the size at which text is at most `width` wide.
 fn fit(text: &str, size: f32, width: f32) -> f32 {
     size * (width / super::text::text_width(text, size).max(1.0)).min(1.0)
 }

@@ -1,4 +1,4 @@
-//! What a picture promises.
+//! Promises of pictures.
 
 use super::*;
 
@@ -6,7 +6,7 @@ fn some_grid(width: usize, height: usize) -> Grid {
     Grid::new(Point2::new(-3.0, 2.0), 0.1, width, height).unwrap()
 }
 
-/// The colour of a pixel.
+/// Returns the colour of a pixel.
 fn at((width, _, pixels): &(u32, u32, Vec<u8>), x: usize, y: usize) -> Rgb {
     let start = (y * *width as usize + x) * 3;
     Rgb(pixels[start], pixels[start + 1], pixels[start + 2])

@@ -13,14 +13,14 @@ static FONT: LazyLock<Face<'static>> = LazyLock::new(|| {
 /// The height of a capital letter as a share of the size of text.
 pub(crate) const CAP_HEIGHT: f32 = 0.73;
 
-/// The length of a line of text \[pixels\].
+/// Returns the length of a line of text \[pixels\].
 pub(crate) fn text_width(text: &str, size: f32) -> f32 {
     let scale = size / f32::from(FONT.units_per_em());
     text.chars().map(|c| advance(glyph(c)) * scale).sum()
 }
 
-/// The outlines of a line of text that begins at `x` on the line `baseline` \[pixels\];
-/// `None` if there is nothing to see.
+/// Returns the outlines of a line of text that begins at `x` on the line `baseline` \[pixels\];
+/// `None` if nothing is visible.
 pub(crate) fn text_path(text: &str, size: f32, x: f32, baseline: f32) -> Option<Path> {
     let scale = size / f32::from(FONT.units_per_em());
     let mut pen = Pen { path: PathBuilder::new(), x, y: baseline, scale };
@@ -32,7 +32,7 @@ pub(crate) fn text_path(text: &str, size: f32, x: f32, baseline: f32) -> Option<
     pen.path.finish()
 }
 
-/// The glyph of a letter; that of `?` if the font lacks it.
+/// Returns the glyph of a letter, or that of `?` if the font lacks the letter.
 fn glyph(c: char) -> GlyphId {
     let c = if c.is_whitespace() { ' ' } else { c };
     FONT.glyph_index(c).or_else(|| FONT.glyph_index('?')).unwrap_or_default()
@@ -42,7 +42,7 @@ fn advance(id: GlyphId) -> f32 {
     f32::from(FONT.glyph_hor_advance(id).unwrap_or_default())
 }
 
-/// Takes outlines with y up, in units of the font, to pixels with y down.
+/// Pen that converts outlines with y up, in units of the font, to pixels with y down.
 struct Pen {
     path: PathBuilder,
     x: f32,

@@ -4,10 +4,11 @@ use crate::Example;
 use covmap_statistics::resample;
 use rayon::prelude::*;
 
-/// The block of every cell of an example's truth, in its order, from 0 to below `blocks`:
-/// the trajectory is cut into `blocks` pieces of equally many consecutive scans, and a cell
-/// belongs to the piece that has the pose nearest to its centre; of equally near ones, to the
-/// first. Without scans all belong to block 0.
+/// Returns the block of every cell of an example's truth, in its order, from 0 to below `blocks`.
+///
+/// The trajectory is cut into `blocks` pieces of equally many consecutive scans, and a cell belongs
+/// to the piece that has the pose nearest to its centre; of equally near ones, to the first.
+/// Without scans all cells belong to block 0.
 pub fn trajectory_blocks(example: &Example, blocks: usize) -> Vec<usize> {
     let scans = &example.scans;
     let block = |cell| {
@@ -21,7 +22,7 @@ pub fn trajectory_blocks(example: &Example, blocks: usize) -> Vec<usize> {
     example.truth.par_iter().map(|(cell, _)| block(*cell)).collect()
 }
 
-/// How often each block is drawn in each resample.
+/// Returns the number of draws of each block in each resample.
 pub(crate) fn resamples(
     blocks: usize,
     times: usize,

@@ -1,30 +1,30 @@
-//! What a method's output has meant before: its levels, and the truths that came with them.
+//! The calibration of a method's output: its levels, and the truths of training data at each.
 
 use crate::class_score::mean;
 use covmap::lower_bin;
 use serde::Serialize;
 
-/// The number of levels of a method's output that are told apart.
+/// The number of different levels of a method's output.
 pub const CALIBRATION_LEVELS: usize = 20;
 
-/// For every level of a method's expected coverage the distribution of the true coverage, as
-/// training data had it.
+/// For every level of a method's expected coverage the distribution of the true coverage in
+/// training data.
 ///
 /// ```text
 /// level = ⌊20·mean⌋      p(bin | level) = (N(level, bin) + 1) / (N(level) + n)
 /// ```
 ///
-/// (Laplace's rule of succession.) A truth between two bins counts in both in parts. All
-/// cells count alike. It forgets all of a posterior but its mean: what it gives to every
-/// method is a fair reading of that one number.
+/// (Laplace's rule of succession.) A truth between two bins counts in both in parts. All cells
+/// count alike. The table forgets all of a posterior but its mean, and gives every method a fair
+/// reading of that one number.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct CalibrationTable {
     levels: Vec<Vec<f64>>,
 }
 
 impl CalibrationTable {
-    /// The table of some posteriors over `bins` bins, each with the true coverage of its
-    /// cell. Levels that never occur are uniform.
+    /// Fits the table to some posteriors over `bins` bins, each with the true coverage of its cell.
+    /// Levels that never occur are uniform.
     ///
     /// # Panics
     /// Unless there are at least two bins.
@@ -43,7 +43,7 @@ impl CalibrationTable {
         Self { levels }
     }
 
-    /// The calibrated posterior in place of a method's own.
+    /// Returns the calibrated posterior in place of a method's own.
     pub fn apply(&self, posterior: &[f64]) -> &[f64] {
         &self.levels[level(posterior)]
     }
@@ -62,7 +62,7 @@ mod tests {
     use covmap_statistics::{log_likelihood, randomised_pit};
     use proptest::prelude::*;
 
-    /// Truths from a ramp; posteriors that are far too sure of what they half know.
+    /// Returns truths from a ramp, with posteriors that are far too certain of half knowledge.
     fn overconfident() -> Vec<(Vec<f64>, f64)> {
         let cell = |i: usize| {
             let truth = (i % 101) as f64 / 100.0;
@@ -73,7 +73,7 @@ mod tests {
         (0..4040).map(cell).collect()
     }
 
-    /// The distance of the transform's distribution from a uniform one.
+    /// Returns the distance of the transform's distribution from a uniform one.
     fn distance(cells: &[(Vec<f64>, f64)], of: impl Fn(&[f64]) -> Vec<f64>) -> f64 {
         let fraction = |i: usize, n: usize| (i as f64 + 0.5) / n as f64;
         let n = cells.len();

@@ -1,11 +1,11 @@
-//! A baseline: counting hits and passes, with a Beta posterior.
+//! A baseline: counts of hits and passes, with a Beta posterior.
 
 use covmap::{Cell, Grid, Raster};
 use covmap_model::{ModelError, Outcome, SensorModel};
 use covmap_sonar::Scan;
 use serde::{Deserialize, Serialize};
 
-/// How the Beta counting weighs a beam.
+/// Weights of a beam in the Beta counting.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BetaCounting {
@@ -13,13 +13,13 @@ pub struct BetaCounting {
     pub prior_hits: f64,
     /// b of the prior: passes before the first scan.
     pub prior_passes: f64,
-    /// What a beam that ends in a cell adds to a.
+    /// Addition to a by a beam that ends in a cell.
     pub hit: f64,
-    /// What a beam that ends just before a cell adds to a; 0 ignores cells behind an end.
+    /// Addition to a by a beam that ends just before a cell; 0 ignores cells behind an end.
     pub behind: f64,
-    /// What an echo from behind a cell adds to b.
+    /// Addition to b by an echo from behind a cell.
     pub pass: f64,
-    /// What a beam without an echo adds to b.
+    /// Addition to b by a beam without an echo.
     pub no_echo: f64,
 }
 
@@ -30,9 +30,9 @@ impl Default for BetaCounting {
     }
 }
 
-/// No prior and no weight is larger than this.
+/// Largest prior and weight.
 const LARGEST: f64 = 1e3;
-/// Neither a nor b grows beyond this: the posterior is a point long before.
+/// Largest a and b: the posterior is a point long before.
 const LARGEST_COUNT: f64 = 1e6;
 
 impl BetaCounting {
@@ -48,7 +48,7 @@ impl BetaCounting {
         within("beta.no_echo", self.no_echo, 0.0)
     }
 
-    /// (a, b) of every cell after some scans; `None` where no beam counted.
+    /// Returns (a, b) of every cell after some scans; `None` where no beam counted.
     ///
     /// # Panics
     /// If a scan does not fit the model's ring.
@@ -77,9 +77,11 @@ impl BetaCounting {
     }
 }
 
-/// The distribution Beta(a, b) over n bins that stand **at** coverages: a coverage between
-/// two bins belongs to both in parts, just as a truth between two bins is scored, so that the
-/// mean stays a/(a + b) exactly. With F the cumulated distribution and h = 1/(n − 1),
+/// Returns the distribution Beta(a, b) over n bins that stand **at** coverages.
+///
+/// A coverage between two bins belongs to both in parts, just as a truth between two bins is
+/// scored, so that the mean stays a/(a + b) exactly. With F the cumulated distribution and
+/// h = 1/(n − 1),
 ///
 /// ```text
 /// p_0 + … + p_k = 1/h · ∫ F(c) dc from k·h to (k+1)·h = (J((k+1)·h) − J(k·h)) / h
@@ -116,11 +118,11 @@ pub(crate) fn beta_posterior(a: f64, b: f64, bins: usize) -> Vec<f64> {
     (0..bins).map(&mut bin).collect()
 }
 
-/// The regularised incomplete beta function `I_x(a, b)`, and `xᵃ(1 − x)ᵇ / B(a, b)`.
+/// Returns the regularised incomplete beta function `I_x(a, b)`, and `xᵃ(1 − x)ᵇ / B(a, b)`.
 ///
-/// By its continued fraction \[DLMF 8.17.22\], which converges fast below the mean; above it
-/// by `I_x(a, b) = 1 − I_{1−x}(b, a)`. (Own, from the portable `libm`, so that results have
-/// the same bits everywhere.)
+/// The code evaluates the continued fraction \[DLMF 8.17.22\], which converges fast below the mean;
+/// above it the code uses `I_x(a, b) = 1 − I_{1−x}(b, a)`. (It is our own, from the portable
+/// `libm`, so that results have the same bits everywhere.)
 fn beta_cdf(a: f64, b: f64, x: f64) -> (f64, f64) {
     if x <= 0.0 || x >= 1.0 {
         return (if x <= 0.0 { 0.0 } else { 1.0 }, 0.0);
@@ -135,7 +137,7 @@ fn beta_cdf(a: f64, b: f64, x: f64) -> (f64, f64) {
     (cdf.clamp(0.0, 1.0), power)
 }
 
-/// `1/(1 + d₁/(1 + d₂/(1 + …)))` of DLMF 8.17.22, forwards as products of ratios of
+/// Evaluates `1/(1 + d₁/(1 + d₂/(1 + …)))` of DLMF 8.17.22 forwards, as products of ratios of
 /// successive convergents (the modified algorithm of Lentz).
 fn continued_fraction(a: f64, b: f64, x: f64) -> f64 {
     const TINY: f64 = 1e-300;

@@ -1,6 +1,6 @@
 //! A baseline: a forward update of the same histograms, as confidence-rich mapping does it.
 //!
-//! Its maps are only compared: the robot's own belief changes in `covmap-model` alone.
+//! Its maps serve comparison only: the robot's own belief changes in `covmap-model` alone.
 
 use super::prior_probability;
 use covmap::{Cell, Change, CoverageMap, Grid, bin_coverage};
@@ -17,13 +17,13 @@ pub struct Crm {
     pub range_noise: f64,
     /// The share of echoes that come from anywhere, uniform over the usable range.
     pub outlier: f64,
-    /// The probability that a surface that stops the beam is not heard: it is turned away,
-    /// and what is read is no echo or one from beyond the usable range.
+    /// The probability that a surface that stops the beam is not heard: the sound is turned away,
+    /// and the reading is no echo or one from beyond the usable range.
     pub lost: f64,
     /// The prior of a cell: this share is uniform over the bins, the rest is coverage 0.
     pub prior: f64,
-    /// How a cell's share of its ring counts, an exponent: with 0 any full cell of a ring
-    /// stops the beam, with 1 it does so with the cell's share of the ring's width.
+    /// Exponent on a cell's share of its ring: with 0 any full cell of a ring stops the beam, with
+    /// 1 it does so with the cell's share of the ring's width.
     pub spread: f64,
     /// Exponent ≤ 1 on the evidence of one reading, as that of Eq. (9).
     pub tempering: f64,
@@ -57,8 +57,8 @@ impl Crm {
         within("crm.tempering", self.tempering, 1e-3, 1.0)
     }
 
-    /// Integrates a scan into a map: each beam is explained by the map as it was before it, so
-    /// that their order matters. Returns what changed.
+    /// Integrates a scan into a map. The map before a beam explains the beam, so that their order
+    /// matters. Returns the changes.
     ///
     /// # Panics
     /// If the scan does not fit the model's ring.
@@ -86,11 +86,11 @@ impl Crm {
     /// p(z | c) = A_k + S_k·L_k + S_k·o·(1 − s·c)·(T_k − L_k)
     /// ```
     ///
-    /// for a cell of ring k: linear in its coverage c, with all other cells at their means ρ.
-    /// s is the cell's share of its ring to the power `spread`; o is Π (1 − s_i ρ_i) of the
-    /// ring's other cells; `A_k` is the likelihood of z being caused before the ring, `S_k`
-    /// that the beam comes to it, `L_k` the likelihood of z if it is caused there, `T_k` that
-    /// of z if the beam goes on. An echo adds a uniform share of outliers to p.
+    /// for a cell of ring k. It is linear in the cell's coverage c, with all other cells at their
+    /// means ρ. s is the cell's share of its ring to the power `spread`; o is Π (1 − s_i ρ_i) of
+    /// the ring's other cells; `A_k` is the likelihood of z being caused before the ring, `S_k` the
+    /// probability that the beam comes to it, `L_k` the likelihood of z if it is caused there,
+    /// `T_k` that of z if the beam goes on. An echo adds a uniform share of outliers to p.
     ///
     /// Choice: any cell of a ring can stop the beam; with a sum of weights, as in the range
     /// likelihood of the planner, a wide ring could hardly be free in one cell only.
@@ -140,7 +140,7 @@ impl Crm {
         changes
     }
 
-    /// Fills in how much each cell stops the beam, and returns 1 − q of every ring.
+    /// Sets the probability with which each cell stops the beam, and returns 1 − q of every ring.
     fn keep(&self, map: &CoverageMap, rings: &mut Rings) -> Vec<f64> {
         let bins = map.bins();
         let unknown: f64 =
@@ -164,7 +164,7 @@ impl Crm {
         keep
     }
 
-    /// The likelihood of z if the beam goes on beyond each ring.
+    /// Returns the likelihood of z if the beam goes on beyond each ring.
     fn onwards(&self, keep: &[f64], outcome: Outcome, heard: impl Fn(usize) -> f64) -> Vec<f64> {
         let mut onwards = vec![0.0; keep.len()];
         let mut value = match outcome {
@@ -178,8 +178,8 @@ impl Crm {
         onwards
     }
 
-    /// The likelihood of z if the beam is stopped at a distance \[m\]; for echoes a density
-    /// \[1/m\].
+    /// Returns the likelihood of z if the beam is stopped at a distance \[m\]; for echoes a
+    /// density \[1/m\].
     fn heard(&self, outcome: Outcome, distance: f64) -> f64 {
         match outcome {
             Outcome::Echo(d) => {
@@ -199,7 +199,7 @@ struct RingCell {
     cell: Cell,
     /// s: the probability that it stops the beam if it is full.
     share: f64,
-    /// s·ρ: the probability that it does, as far as is known.
+    /// s·ρ: the probability that it stops the beam, as far as is known.
     stops: f64,
 }
 
@@ -230,7 +230,7 @@ impl Rings {
     }
 }
 
-/// The distance of a ring \[m\].
+/// Returns the distance of a ring \[m\].
 fn ring_distance(ring: usize, resolution: f64) -> f64 {
     ring as f64 * resolution
 }

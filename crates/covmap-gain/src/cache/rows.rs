@@ -1,4 +1,4 @@
-//! What is done for one row of groups of view-points, compiled for each kind of vector registers.
+//! The work for one row of groups of view-points, compiled for each kind of vector registers.
 //!
 //! `here` is always the index of the row's first view-point in the bordered rasters, and `wanted` has
 //! a bit for each view-point of each group.
@@ -158,13 +158,13 @@ impl WithSimd for RefreshBounds<'_> {
     }
 }
 
-/// For which view-points of a group the gains of all beams are up to date, and the bounds.
+/// Records for which view-points of a group the gains, and the bounds, of all beams are up to date.
 pub(super) fn up_to_date(group: &mut GroupState, states: &[BeamState]) {
     group.gain = states.iter().fold(u16::MAX, |all, state| all & state.gain);
     group.bound = states.iter().fold(u16::MAX, |all, state| all & state.bound);
 }
 
-/// The average over the beams, of each view-point of a group.
+/// Returns the average over the beams, of each view-point of a group.
 pub(super) fn average(answers: &[BeamAnswer]) -> [f64; LANES] {
     let mut sum = [0.0; LANES];
     for answer in answers {

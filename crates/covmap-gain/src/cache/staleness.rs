@@ -1,63 +1,64 @@
-//! Which cached values are up to date, and whom a change of a cell makes stale.
+//! The state of cached values, and the values that a change of a cell makes stale.
 //!
-//! The values of a (group of view-points, beam) depend on the first cells of the beam, in the beam's
-//! order of distance, up to its [`horizon`](BeamState::horizon). A change of a cell is *marked*, and
-//! told to its onlookers when values are next asked for: to every (group, beam) that has the cell in
-//! its stencil. Those whose horizon it lies within forget what depends on it.
+//! The values of a (group of view-points, beam) depend on the first cells of the beam, in the
+//! beam's order of distance, up to its [`horizon`](BeamState::horizon). A change of a cell is
+//! *marked*, and told to its onlookers when values are next asked for: to every (group, beam) that
+//! has the cell in its stencil. An onlooker forgets the values that depend on the cell if the cell
+//! lies within its horizon.
 
 use crate::Stencil;
 use crate::view_points::{group_and_lane, groups_per_row};
 use covmap::Grid;
 use covmap::lanes::LANES;
 
-/// What about a cell changed.
+/// Kind of a change of a cell.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CellChange {
-    /// What it reflects, or whether it can change.
+    /// Its reflection, or its ability to change.
     Reflection,
-    /// Nothing of that, but its posterior.
+    /// Only its posterior.
     Posterior,
     /// The distance up to which it is a reason to measure.
     Limit,
 }
 
 impl CellChange {
-    /// All, in the order of their numbers.
+    /// All kinds, in the order of their numbers.
     const ALL: [Self; 3] = [Self::Reflection, Self::Posterior, Self::Limit];
 }
 
-/// One beam of a group of view-points: which of them are up to date, bit by bit.
+/// State of one beam of a group of view-points, a bit for each.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct BeamState {
-    /// V(l) is.
+    /// V(l) is up to date.
     pub(super) sight: u16,
-    /// Whether there is a reason to measure in sight is.
+    /// `has_reason` is up to date.
     pub(super) reason: u16,
-    /// E\[I\] is.
+    /// E\[I\] is up to date.
     pub(super) gain: u16,
-    /// E\[I\] or an upper bound of it is.
+    /// E\[I\] or an upper bound of it is up to date.
     pub(super) bound: u16,
     /// There is a reason to measure in sight.
     pub(super) has_reason: u16,
-    /// The number of cells of the beam, the first ones, on which the values depend.
+    /// The number of nearest cells of the beam on which the values depend.
     pub(super) horizon: u16,
 }
 
-/// The same of a group of view-points over all beams, bit by bit.
+/// State of a group of view-points over all beams, a bit for each.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct GroupState {
     /// Sight and reasons of all beams are up to date.
     pub(super) sight: u16,
-    /// The gains of all beams are.
+    /// The gains of all beams are up to date.
     pub(super) gain: u16,
-    /// The gains of all beams or upper bounds of them are.
+    /// The gains of all beams or upper bounds of them are up to date.
     pub(super) bound: u16,
     /// There is a reason to measure in sight of some beam.
     pub(super) has_reason: u16,
 }
 
 impl BeamState {
-    /// Forgets what a change within the horizon makes stale.
+    /// Forgets the values that a change within the horizon makes stale.
     fn forget(&mut self, change: CellChange) {
         match change {
             CellChange::Reflection => {
@@ -90,7 +91,7 @@ impl GroupState {
 }
 
 /// Neighbouring view-points of a row that have a cell in the same beam: their places from the cell,
-/// and the least rank that it has in the beam's order of distance.
+/// and the cell's least rank in the beam's order of distance.
 #[derive(Debug, Clone, Copy)]
 struct OnlookerRun {
     dy: i32,
@@ -100,14 +101,14 @@ struct OnlookerRun {
     rank: u16,
 }
 
-/// The longest run: ranks differ little within it.
+/// Length of the longest run: ranks differ little within it.
 const LONGEST: i32 = 6;
 
-/// From where a cell is seen, and the cells with a change that their onlookers were not told.
+/// The onlookers of a cell, and the changes that they were not told yet.
 #[derive(Debug, Clone)]
 pub(super) struct Onlookers {
     grid: Grid,
-    /// Of any cell: a stencil, seen the other way round.
+    /// Onlookers of any cell: a stencil, seen the other way round.
     runs: Vec<OnlookerRun>,
     /// For each block of cells, for each kind of change, a bit for each lane.
     marked: Vec<[u16; CellChange::ALL.len()]>,
@@ -140,7 +141,7 @@ impl Onlookers {
         }
     }
 
-    /// Takes note of a change of a cell, by its row-major index.
+    /// Marks a change of a cell, by its row-major index.
     pub(super) fn mark(&mut self, index: usize, change: CellChange) {
         let (block, lane) = group_and_lane(self.grid.width(), index);
         if self.marked[block] == [0; CellChange::ALL.len()] {
@@ -149,8 +150,8 @@ impl Onlookers {
         self.marked[block][change as usize] |= 1 << lane;
     }
 
-    /// Makes stale what depends on marked cells, and forgets the marks. There is a state for each
-    /// group, and for each group one for each beam.
+    /// Makes the values that depend on marked cells stale, and clears the marks. `groups` has a
+    /// state for each group, and `states` has one for each beam of each group.
     pub(super) fn tell(
         &mut self,
         beams: usize,
@@ -166,8 +167,8 @@ impl Onlookers {
         });
     }
 
-    /// Every change, with the group and the beam of an onlooker, and a rank that the changed cells of
-    /// a block have at least. Forgets the marks.
+    /// Visits every change, with the group and the beam of an onlooker, and the least rank that the
+    /// changed cells of a block can have. Clears the marks.
     fn for_each_onlooker(&mut self, mut tell: impl FnMut(CellChange, usize, usize, u16)) {
         let per_row = groups_per_row(&self.grid);
         let lanes = i32::from(u8::try_from(LANES).unwrap_or(0));

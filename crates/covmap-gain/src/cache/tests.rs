@@ -1,4 +1,4 @@
-//! What is kept is what a fresh cache computes, and what bounds bound.
+//! Kept values are those of a fresh cache, and bounds hold.
 
 use super::*;
 use covmap::Raster;
@@ -6,7 +6,7 @@ use covmap_model::{ModelParameters, integrate};
 use covmap_sonar::{Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2, Vector2};
 
-/// Every kind of registers that this machine has.
+/// Returns every kind of registers that this machine has.
 fn kinds() -> Vec<Arch> {
     let mut kinds = vec![Arch::Scalar];
     #[cfg(target_arch = "x86_64")]
@@ -18,7 +18,7 @@ fn kinds() -> Vec<Arch> {
     kinds
 }
 
-/// A cache that knows nothing yet.
+/// Creates a cache of an unknown map.
 fn kept(model: &SensorModel, grid: Grid) -> GainCache {
     let prediction = RangePrediction {
         gain: InformationGain::Eq14,
@@ -29,13 +29,13 @@ fn kept(model: &SensorModel, grid: Grid) -> GainCache {
     GainCache::new(model, 0.1, grid, prediction, Upkeep::Kept).unwrap()
 }
 
-/// Takes over a cell, and forgets all that may depend on it.
+/// Takes over a cell, and forgets all values that may depend on it.
 fn see(cache: &mut GainCache, map: &CoverageMap, cell: Cell) {
     cache.update(map, cell);
     cache.onlookers.mark(cache.grid.index(cell).unwrap(), CellChange::Reflection);
 }
 
-/// All that is kept after some scans, with one kind of registers.
+/// Returns all kept values after some scans, with one kind of registers.
 fn values(arch: Arch) -> (Vec<u64>, Vec<[u16; LANES]>, Vec<u16>) {
     let model = SensorModel::new(&ModelParameters::by_hand(), &SonarRing::b21r(), 0.1).unwrap();
     let grid = Grid::new(Point2::new(-2.0, -2.0), 0.1, 43, 37).unwrap();
@@ -67,7 +67,7 @@ fn gains_that_are_kept_are_those_of_a_fresh_cache() {
         let mut map = CoverageMap::new(grid, 11).unwrap();
         let mut cache = kept(&model, grid);
         let last = height - 1;
-        // Rows that were outside of what is worked at are inside later, and back.
+        // Rows are first outside of the evaluated part, then inside, and then outside again.
         for (turn, rows) in
             [0..1, last..height, height / 2..height / 2 + 1, 0..height, last..height, 0..1]
                 .into_iter()

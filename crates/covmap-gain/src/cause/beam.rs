@@ -1,4 +1,4 @@
-//! What is the same of a beam from all view-points.
+//! The parts of a beam that are the same from all view-points.
 
 use super::ceilings::Bands;
 use super::ends::{AtEnd, Kernel};
@@ -12,7 +12,7 @@ pub(super) struct CauseCell {
     /// Columns and rows from the view-point.
     pub(super) dx: isize,
     pub(super) dy: isize,
-    /// From the view-point in the bordered rasters.
+    /// Offset from the view-point in the bordered rasters.
     pub(super) offset: isize,
     /// m.
     pub(super) bearing: usize,
@@ -22,42 +22,42 @@ pub(super) struct CauseCell {
     pub(super) free: f32,
 }
 
-/// How an echo from one range divides the beam's cells, which are in order of their distance.
+/// Division of the beam's cells, in order of their distance, by an echo from one range.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct End {
-    /// The number of cells in front of the end, the first ones,
+    /// The number of cells in front of the end, the first ones.
     pub(super) front: usize,
-    /// up to here it may lie in them,
+    /// End of the cells in which the echo may have ended.
     pub(super) ended: usize,
-    /// and up to here they are behind it.
+    /// End of the cells behind the end of the echo.
     pub(super) reach: usize,
-    /// Where those from `front` on begin among the beam's `near`.
+    /// Start of those from `front` on among the beam's `near`.
     pub(super) first: usize,
-    /// Where those that may have caused it begin and end among the beam's `surfaces`.
+    /// Start and end of those that may have caused the echo among the beam's `surfaces`.
     pub(super) surfaces: (usize, usize),
 }
 
-/// A cell as an echo may have ended in it.
+/// A cell in which an echo may have ended.
 #[derive(Debug, Clone)]
 pub(super) struct NearEnd {
     /// f(d^l, θ) if the cell's centre is before the end, else 0.
     pub(super) free: f32,
     /// N(μ, σ) of every bin.
     pub(super) ended: Vec<f32>,
-    /// In which of the bands of the ceilings σ is.
+    /// Band of σ in the ceilings.
     pub(super) band: usize,
-    /// A bit for every bin in which much may be said.
+    /// A bit for every bin with much evidence: [`Kernel::large`].
     pub(super) large: u64,
 }
 
 impl NearEnd {
-    /// What the echo says of it.
+    /// Returns the evidence of the echo about it.
     pub(super) fn kernel(&self) -> Kernel<'_> {
         Kernel { ended: &self.ended, weight: 1.0, free: self.free, large: self.large }
     }
 }
 
-/// A cell as it may have caused an echo.
+/// A cell that may have caused an echo.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Surface {
     /// m.

@@ -7,13 +7,13 @@ use crate::numbers::{as_f64, to_f32};
 use covmap::lanes::{LANES, Lanes, exp, ln, map};
 use covmap_model::CauseParameters;
 
-/// The most bearings.
+/// The largest number of bearings.
 const MOST: usize = 16;
 
-/// Who causes the outcomes of a beam, which are asked for in order of their range.
+/// The causes of a beam's outcomes, which the caller asks for in order of their range.
 pub(super) struct GroupCauses<'a> {
     parameters: &'a CauseParameters,
-    /// How much of a reading would be new.
+    /// Novelty of a reading.
     novelty: &'a Lanes,
     /// The number of cells that are passed.
     passed: usize,
@@ -34,13 +34,13 @@ impl<'a> GroupCauses<'a> {
         Self { parameters, novelty, passed, clear, is_hidden, ended: [none; MOST], any: none }
     }
 
-    /// c_m of the bearing of a cell.
+    /// Returns c_m of the bearing of a cell.
     #[inline(always)]
     pub(super) fn ended(&self, cell: &CauseCell) -> &Lanes {
         &self.ended[cell.bearing]
     }
 
-    /// Takes the cells up to some of them for passed: the clear view is as they leave it.
+    /// Takes the first cells of a beam, `cells`, as passed: the clear view is as they leave it.
     #[inline(always)]
     pub(super) fn pass(&mut self, clear: &[f32], cells: &[CauseCell], here: usize) {
         for cell in cells.get(self.passed..).unwrap_or_default() {
@@ -114,7 +114,7 @@ impl<'a> GroupCauses<'a> {
         }
     }
 
-    /// L without an echo.
+    /// Returns L without an echo.
     #[inline(always)]
     pub(super) fn of_no_echo(&self) -> Lanes {
         let share = to_f32(self.parameters.no_echo.share);

@@ -1,15 +1,15 @@
-//! Upper bounds of what is gained in a cell: what a decision need not evaluate.
+//! Upper bounds of the gain of a cell, with which a decision need not evaluate all gains.
 //!
-//! For every cell pairs of numbers are kept: by the share s of "ended" the largest gain U, and the
-//! largest slope U', for each of [`BANDS`] of the width σ of what an echo says; the same by the
-//! share g of "passed", V and V'; and by that of "behind", W and W'. They are such that
+//! For every cell the evaluation keeps pairs of numbers: by the share s of "ended" the largest gain
+//! U, and the largest slope U', for each of [`BANDS`] of the width σ of the kernel of an echo; the
+//! same by the share g of "passed", V and V'; and by that of "behind", W and W'. They satisfy
 //!
 //! ```text
 //! G(g) ≤ min(V, V'·g)     I(s, g) ≤ min(U, U'·s) + min(V, V'·g)     B(s) ≤ min(W, W'·s)
 //! ```
 //!
-//! They are the largest gains, and parts of gain by share, of some kernels at some shares. That is
-//! probed and not proved: [`crate::GainCache::take_exceeded`] tells of gains that were met above
+//! They are the largest gains, and the largest ratios of gain and share, of some kernels at some
+//! shares. That is probed and not proved: [`crate::GainCache::take_exceeded`] tells of gains above
 //! their bounds, and a decision that meets one evaluates all of its candidates.
 
 use super::fronts::FrontSums;
@@ -24,10 +24,10 @@ use covmap::lanes::{LANES, Lanes, add_product, add_scaled};
 use pulp::Arch;
 use rayon::prelude::*;
 
-/// Gains at other shares and of other kernels may exceed those that are looked at by this.
+/// Factor by which gains at other shares and of other kernels may exceed those that are probed.
 const MARGIN: f32 = 1.2;
 
-/// Of the widths of kernels at the end.
+/// The number of bands of the widths of kernels at the end.
 pub(super) const BANDS: usize = 3;
 
 /// The widths σ at which the bands begin and end.
@@ -38,22 +38,22 @@ pub(super) struct Bands {
 }
 
 impl Bands {
-    /// Of the `least` and the `most` σ.
+    /// Creates the bands of the `least` to the `most` σ.
     pub(super) fn new(least: f64, most: f64) -> Self {
         Self { least, most }
     }
 
-    /// Where a band begins; the last one ends where the next would begin.
+    /// Returns the beginning of a band; the last one ends where the next would begin.
     fn begin(&self, band: usize) -> f64 {
         self.least + (self.most - self.least) * as_f64(band) / as_f64(BANDS)
     }
 
-    /// The band of a width.
+    /// Returns the band of a width.
     pub(super) fn of(&self, sigma: f64) -> usize {
         (1..BANDS).filter(|band| self.begin(*band) <= sigma).count()
     }
 
-    /// μ and σ of kernels that stand for all of a band.
+    /// Returns μ and σ of kernels that stand for all of a band.
     pub(super) fn kernels(&self, band: usize) -> Vec<(f64, f64)> {
         let mu = |i: u32| 0.1 * f64::from(i);
         let sigmas = [self.begin(band), self.begin(band + 1)];
@@ -66,29 +66,29 @@ const PASSED: usize = BANDS;
 const BEHIND: usize = BANDS + 1;
 const PAIRS: usize = BANDS + 2;
 
-/// The parts of the largest share that are looked at.
+/// The parts of the largest share that are probed.
 const PARTS: [f64; 4] = [1.0, 0.5, 0.2, 0.05];
 
-/// The readings that are looked at, and 1/share of each.
+/// The readings that are probed, and 1/share of each.
 #[derive(Debug, Clone)]
 struct Looked {
     by_share: Vec<f32>,
     readings: Vec<ExcessEvidence>,
 }
 
-/// These numbers of all cells.
+/// The pairs of all cells.
 #[derive(Debug, Clone)]
 pub(super) struct Ceilings {
     grid: Grid,
     /// By pair.
     looked: [Looked; PAIRS],
-    /// By row, which number of which pair, and column, padded as histograms are.
+    /// By row, pair, number of the pair, and column, padded as histograms are.
     largest: Vec<f32>,
 }
 
 impl Ceilings {
-    /// Of each pair the largest share, and μ and σ of its kernels; `evidence` is what a kernel says
-    /// with a share.
+    /// Creates the ceilings by the largest share, and μ and σ of the kernels, of each pair.
+    /// `evidence` makes the evidence of a kernel with a share.
     pub(super) fn new(
         grid: Grid,
         pairs: [(f64, Vec<(f64, f64)>); PAIRS],
@@ -106,7 +106,7 @@ impl Ceilings {
         Self { grid, looked, largest }
     }
 
-    /// About how many bytes this takes.
+    /// Estimates the bytes of the ceilings.
     pub(super) fn bytes(size: &Size) -> f64 {
         4.0 * as_f64(2 * PAIRS) * size.padded()
     }
@@ -144,8 +144,8 @@ impl Ceilings {
         });
     }
 
-    /// The bound of a cell in which an echo may have ended, by c_m, L, and f where the cell was
-    /// passed.
+    /// Returns the bound of a cell in which an echo may have ended, by c_m, L, and f where the cell
+    /// was passed.
     #[inline(always)]
     pub(super) fn of_end(
         &self,
@@ -164,7 +164,7 @@ impl Ceilings {
         bound
     }
 
-    /// The bound of a cell behind the end, by its share.
+    /// Returns the bound of a cell behind the end, by its share.
     #[inline(always)]
     pub(super) fn of_behind(&self, place: (usize, isize), ended: &Lanes, weight: f32) -> Lanes {
         let mut shares = [0.0; LANES];
@@ -172,14 +172,14 @@ impl Ceilings {
         self.bound(place, BEHIND, (&ONCE, &shares))
     }
 
-    /// Sums to which nothing is added yet.
+    /// Creates sums to which nothing is added yet.
     #[inline(always)]
     pub(super) fn no_sums(&self) -> CeilingSums<'_> {
         CeilingSums { ceilings: self, all: [0.0; LANES], passed: [0.0; LANES] }
     }
 
-    /// The smaller of the largest gain and of slope times share, of a pair of numbers, for outcomes
-    /// of which these are the sums of p and of p·share.
+    /// Returns the smaller of the largest gain and of slope times share, of a pair of numbers. The
+    /// outcomes' sums of p and of p·share are `all` and `shares`.
     #[inline(always)]
     fn bound(&self, (y, x): (usize, isize), pair: usize, (all, shares): (&Lanes, &Lanes)) -> Lanes {
         let stride = padded(self.grid.width());
@@ -195,7 +195,7 @@ impl Ceilings {
     }
 }
 
-/// One outcome, and that for sure.
+/// Probability of one outcome that is sure.
 const ONCE: Lanes = [1.0; LANES];
 
 /// The sums of p_k and of p_k·L(k).

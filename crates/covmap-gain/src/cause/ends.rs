@@ -1,5 +1,5 @@
-//! What is gained in one cell by one outcome, as it is: in the cells in which an echo may have ended,
-//! and in all where polynomials would not do.
+//! The exact gain of one cell by one outcome: for the cells in which an echo may have ended, and
+//! for all cells where polynomials do not suffice.
 
 use crate::belief::Prior;
 use crate::evidence::{FEW, few, gains, w};
@@ -7,12 +7,12 @@ use crate::numbers::{as_f64, to_f32};
 use covmap::lanes::{LANES, Lanes, add_product, fused, map};
 use covmap_model::{CauseParameters, gaussian};
 
-/// What an outcome may say of a cell.
+/// Possible evidence of an outcome about a cell.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Kernel<'a> {
     /// N(μ, σ) of every bin.
     pub(super) ended: &'a [f32],
-    /// How much of c_m counts for it.
+    /// Weight of c_m for it.
     pub(super) weight: f32,
     /// f(d^l, θ), or 0 where the cell was not passed.
     pub(super) free: f32,
@@ -33,7 +33,7 @@ pub(super) struct AtEnd {
 }
 
 impl AtEnd {
-    /// With the largest c_m and L.
+    /// Creates the evaluation for the largest c_m and L.
     pub(super) fn new(parameters: &CauseParameters, bins: usize, most: (f64, f64)) -> Self {
         let mut at_end = Self { bins, most, free: Vec::new(), behind: Vec::new() };
         at_end.free = at_end.kernel(0.0, parameters.free.sigma);
@@ -41,24 +41,24 @@ impl AtEnd {
         at_end
     }
 
-    /// N(μ, σ) of every bin.
+    /// Returns N(μ, σ) of every bin.
     pub(super) fn kernel(&self, mu: f64, sigma: f64) -> Vec<f32> {
         let mut kernel = vec![0.0; self.bins];
         gaussian(mu, sigma, &mut kernel);
         kernel.into_iter().map(to_f32).collect()
     }
 
-    /// What an echo says of a cell behind its end, with b.
+    /// Returns the evidence of an echo about a cell behind its end, with b.
     pub(super) fn behind(&self, weight: f32) -> Kernel<'_> {
         Kernel { ended: &self.behind, weight, free: 0.0, large: u64::MAX }
     }
 
-    /// What an outcome says of a cell that was passed, with f.
+    /// Returns the evidence of an outcome about a cell that was passed, with f.
     pub(super) fn passed(&self, free: f32) -> Kernel<'_> {
         Kernel { ended: &self.behind, weight: 0.0, free, large: u64::MAX }
     }
 
-    /// The bins in which e may be above [`FEW`], with shares as large as they may be.
+    /// Returns the bins in which e may be above [`FEW`], with shares as large as they may be.
     pub(super) fn large(&self, ended: &[f32], free: f32) -> u64 {
         let (s, g) = (self.most.0, f64::from(free) * self.most.1);
         let rest = 1.0 - s - g;
@@ -71,8 +71,9 @@ impl AtEnd {
         bins.fold(0, |bits, (bin, large)| bits | u64::from(large) << bin)
     }
 
-    /// The gain of a cell from each view-point of a group, by what c_m of its bearing counts
-    /// and L: s = weight·c_m and g = f·(L − c_m). In the terms of [`crate::evidence`], with t_min = (1 − s − g)/n,
+    /// Returns the gain of a cell from each view-point of a group, by c_m of its bearing and L:
+    /// s = weight·c_m and g = f·(L − c_m). In the terms of [`crate::evidence`], with
+    /// t_min = (1 − s − g)/n,
     ///
     /// ```text
     /// e = n·(s·N(μ, σ) + g·N(0, σ_free)) / (1 − s − g)

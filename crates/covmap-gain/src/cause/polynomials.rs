@@ -1,8 +1,9 @@
 //! The gain of every cell as a function of one share, as a polynomial.
 //!
-//! For a kernel K the evidence of a cell is (1 − x)·U + x·K, and its gain an analytic function of
-//! the share x that is 0 at x = 0, and so is the slope of a relative entropy. It is interpolated in
-//! Chebyshev's nodes of \[0, x_max\], as many as the gains of histograms of all kinds need to be met.
+//! For a kernel K the evidence of a cell is (1 − x)·U + x·K. Its gain is an analytic function of
+//! the share x that is 0 at x = 0, where the slope of a relative entropy is 0 as well. It is
+//! interpolated in Chebyshev's nodes of \[0, x_max\]. Their number is what the gains of histograms
+//! of all kinds need.
 
 use super::fronts::FrontSums;
 use crate::InformationGain;
@@ -21,7 +22,7 @@ use rayon::prelude::*;
 /// The largest degree.
 pub(super) const MOST: usize = 12;
 
-/// An interpolated gain may be off by so much of the largest gain of its histogram.
+/// Largest error of an interpolated gain, in about the units of the largest gain of its histogram.
 const TOLERANCE: f64 = 2e-6;
 
 /// The polynomials of all cells.
@@ -31,7 +32,7 @@ pub(super) struct Polynomials {
     largest: f64,
     /// The lowest power.
     first: usize,
-    /// At the nodes.
+    /// The readings at the nodes.
     readings: Vec<ExcessEvidence>,
     /// From gains at the nodes to the coefficients of x/x_max, (x/x_max)², …: a row each.
     to_coefficients: Vec<Vec<f64>>,
@@ -46,9 +47,9 @@ pub(super) struct PowerSums<'a> {
 }
 
 impl Polynomials {
-    /// Of shares up to the `largest`; `evidence` is what a share says. `None` if the polynomials
-    /// would need too many terms: for shares near to 1, or for kernels that are narrow among many
-    /// bins.
+    /// Creates polynomials of shares up to the `largest`; `evidence` makes the evidence of a share.
+    /// Returns `None` if the polynomials would need too many terms: for shares near to 1, or for
+    /// kernels that are narrow among many bins.
     pub(super) fn new(
         grid: Grid,
         gain: InformationGain,
@@ -81,12 +82,12 @@ impl Polynomials {
         })
     }
 
-    /// About how many bytes this takes.
+    /// Estimates the bytes of the polynomials.
     pub(super) fn bytes(size: &Size) -> f64 {
         4.0 * as_f64(MOST) * size.padded()
     }
 
-    /// The shares at which gains are interpolated.
+    /// Returns the shares at which gains are interpolated.
     pub(super) fn shares(&self) -> Vec<f64> {
         nodes(self.degree()).iter().map(|t| t * self.largest).collect()
     }
@@ -123,14 +124,14 @@ impl Polynomials {
         });
     }
 
-    /// The coefficients of the cells from a column of a row on.
+    /// Returns the coefficients of the cells from a column of a row on.
     #[inline(always)]
     fn coefficients(&self, (y, x): (usize, isize)) -> &[f32] {
         let stride = padded(self.grid.width());
         &self.coefficients[y * self.degree() * stride + PAD.wrapping_add_signed(x)..]
     }
 
-    /// The gains by the shares `weight`·x.
+    /// Returns the gains by the shares `weight`·x.
     #[inline(always)]
     pub(super) fn gain(&self, place: (usize, isize), x: &Lanes, weight: f32) -> Lanes {
         let (stride, coefficients) = (padded(self.grid.width()), self.coefficients(place));
@@ -150,7 +151,7 @@ impl Polynomials {
         gain
     }
 
-    /// Sums to which nothing is added yet.
+    /// Creates sums to which nothing is added yet.
     #[inline(always)]
     pub(super) fn no_sums(&self) -> PowerSums<'_> {
         PowerSums { polynomials: self, sums: [[0.0; LANES]; MOST] }
@@ -175,7 +176,7 @@ impl FrontSums for PowerSums<'_> {
         }
     }
 
-    /// The gains by the shares `weight`·x for all the x that were added to the sums.
+    /// Returns the gains by the shares `weight`·x for all the x that were added to the sums.
     #[inline(always)]
     fn of_cell(&self, place: (usize, isize), weight: f32) -> Lanes {
         let Self { polynomials, sums } = self;
@@ -195,15 +196,15 @@ impl FrontSums for PowerSums<'_> {
     }
 }
 
-/// Chebyshev's nodes of \[0, 1\].
+/// Returns Chebyshev's nodes of \[0, 1\].
 fn nodes(degree: usize) -> Vec<f64> {
     let node =
         |j: usize| 0.5 - 0.5 * libm::cos(std::f64::consts::PI * (as_f64(j) + 0.5) / as_f64(degree));
     (0..degree).map(node).collect()
 }
 
-/// The inverse of the matrix of t_j^q, q from the `first` power on: from values at the nodes to
-/// coefficients.
+/// Returns the inverse of the matrix of t_j^q, q from the `first` power on: from values at the
+/// nodes to coefficients.
 fn inverse(nodes: &[f64], first: usize) -> Vec<Vec<f64>> {
     let n = nodes.len();
     let power = |t: f64, q: usize| (0..q + first).fold(1.0, |power, _| power * t);
@@ -212,7 +213,8 @@ fn inverse(nodes: &[f64], first: usize) -> Vec<Vec<f64>> {
     (0..n).map(|q| inverse.row(q).iter().copied().collect()).collect()
 }
 
-/// The largest error of an interpolation by a number of nodes, in units of the largest gain of its probe.
+/// Returns the largest error of an interpolation by a number of nodes. Its units are the largest
+/// gain of its probe plus a twentieth of the largest gain of all.
 fn error(degree: usize, first: usize, gains: impl Fn(f64) -> Vec<f64>) -> f64 {
     let nodes = nodes(degree);
     let (inverse, at_nodes) =

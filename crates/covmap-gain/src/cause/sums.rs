@@ -11,7 +11,7 @@ use crate::outcomes::{AskedRow, BeamAnswer, RowGains};
 use covmap::lanes::{LANES, Lanes, add_product};
 use pulp::{Simd, WithSimd};
 
-/// The gains of one row, and which cells may be expected to change.
+/// The gains and promises of one row.
 pub(super) struct GainsOfRow<'a> {
     pub(super) cause: &'a Cause,
     pub(super) belief: &'a Belief,
@@ -43,7 +43,7 @@ impl WithSimd for GainsOfRow<'_> {
     }
 }
 
-/// What the cells are expected to change by from the view-points of one row, compared with what was
+/// The largest expected changes of the cells from the view-points of one row, compared with those
 /// found so far.
 pub(super) struct LargestOfRow<'a> {
     pub(super) cause: &'a Cause,
@@ -84,13 +84,13 @@ impl WithSimd for LargestOfRow<'_> {
     }
 }
 
-/// What the cells of a beam gain by its outcomes, summed up.
+/// Sums of the gains of a beam's cells by its outcomes.
 pub(super) trait CellSums {
-    /// Adds what a cell gains by outcomes of a probability.
+    /// Adds the gain of a cell by outcomes of a probability.
     fn add(&mut self, cell: usize, probability: &Lanes, gain: &Lanes);
 }
 
-/// All cells together, and those that are reasons to measure.
+/// Sums over all cells, and over those that are reasons to measure.
 pub(super) struct AllAndReasons<'a> {
     cells: &'a [CauseCell],
     limits: &'a [f32],
@@ -119,7 +119,7 @@ impl CellSums for AllAndReasons<'_> {
     }
 }
 
-/// Each cell for itself.
+/// A sum for each cell.
 #[derive(Default)]
 struct EachCell(Vec<Lanes>);
 
@@ -148,11 +148,11 @@ impl EachCell {
     }
 }
 
-/// Of one outcome that is sure.
+/// Probability of one outcome that is sure.
 const SURE: Lanes = [1.0; LANES];
 
-/// A beam's sums over its outcomes from a group of view-points, the first of which is in column `x`
-/// of row `y`.
+/// A beam's sums over its outcomes from a group of view-points. The first view-point is in column
+/// `x` of row `y`.
 pub(super) struct GroupSum<'a> {
     pub(super) cause: &'a Cause,
     pub(super) belief: &'a Belief,
@@ -161,7 +161,7 @@ pub(super) struct GroupSum<'a> {
 }
 
 impl GroupSum<'_> {
-    /// Adds what the cells of a beam are expected to gain, or upper bounds of it.
+    /// Adds the expected gains of the cells of a beam, or upper bounds of them.
     #[inline(always)]
     pub(super) fn sum<const EXACT: bool>(
         &self,
@@ -196,8 +196,8 @@ impl GroupSum<'_> {
         }
     }
 
-    /// What the cells that are reasons to measure are expected to gain, of those that gain at `least`
-    /// so much.
+    /// Returns the expected gains of the cells that are reasons to measure and gain at least
+    /// `least`.
     #[inline(always)]
     fn promise(&self, beam: usize, gains: &EachCell, least: f32) -> Lanes {
         let (limits, here) = (self.belief.limits(), self.here());
@@ -212,7 +212,7 @@ impl GroupSum<'_> {
         promise
     }
 
-    /// The first view-point in the bordered rasters.
+    /// Returns the index of the first view-point in the bordered rasters.
     #[inline(always)]
     fn here(&self) -> usize {
         self.belief.bordered(self.y * self.cause.grid.width()) + self.x
@@ -257,7 +257,7 @@ impl GroupSum<'_> {
         }
     }
 
-    /// What bounds are made of, unless gains are asked for.
+    /// Returns the ceilings, unless gains are asked for.
     #[inline(always)]
     fn bounds<const EXACT: bool>(&self) -> Option<&Ceilings> {
         self.cause.ceilings.as_ref().filter(|_| !EXACT)
@@ -285,7 +285,7 @@ impl GroupSum<'_> {
         }
     }
 
-    /// Cell by cell for one outcome.
+    /// Adds the gains of one outcome cell by cell.
     #[inline(always)]
     fn add_each_front(&self, sums: &mut impl CellSums, beam: &CauseBeam, front: &Front) {
         let at_end = &self.cause.at_end;
@@ -297,7 +297,7 @@ impl GroupSum<'_> {
         }
     }
 
-    /// Row and column of a cell as the first view-point sees it; `None` if it is outside of
+    /// Returns row and column of a cell as the first view-point sees it; `None` if it is outside of
     /// the grid for the whole group.
     #[inline(always)]
     fn place(&self, cell: &CauseCell) -> Option<(usize, isize)> {

@@ -1,4 +1,4 @@
-//! Upper bounds of E\[I\], as far as is probed: what a decision need not evaluate.
+//! Upper bounds of E\[I\], as far as is probed, with which a decision need not evaluate all gains.
 //!
 //! Imagined readings are put into [`mod@families`], and for each family every cell has a *ceiling*: a gain
 //! that no reading of the family exceeds, as far as that is probed. The bound of a beam is Eq. (14)
@@ -9,12 +9,13 @@
 //!   + Σ_k P(k) · Σ_i ceiling(at the end of k or behind)  +  P(no echo) · Σ_i ceiling(no echo)
 //! ```
 //!
-//! each sum over the cells i that the outcomes cover, which is a tenth of the terms of Eq. (14).
+//! Each sum is over the cells i that the outcomes cover. There are a tenth as many terms as in
+//! Eq. (14).
 //!
-//! A ceiling is the largest gain of a few members of the family, with a margin. Members and margin
-//! are found on [`ProbeHistograms`] when the tables are made. That is no proof: of a histogram that no
-//! probe is like a gain may be above its bound, and on coarse grids, of few ranges, some are. So who
-//! relies on bounds has to ask whether one was exceeded.
+//! A ceiling is the largest gain of a few members of the family, with a margin. The members are
+//! chosen on [`ProbeHistograms`] when the tables are made. That is no proof: a histogram unlike all
+//! probes may have a gain above its bound, and on coarse grids, of few ranges, some do. A caller
+//! that relies on bounds therefore has to ask whether one was exceeded.
 
 mod families;
 
@@ -60,7 +61,7 @@ impl Ceilings {
         Self { grid, families, bands, rasters }
     }
 
-    /// About how many bytes this takes: of the bands in front only those that end farther away
+    /// Estimates the bytes of the ceilings: of the bands in front only those that end farther away
     /// than the cell have members.
     pub(super) fn bytes(size: &Size) -> f64 {
         const FAMILIES: usize = BANDS * (BANDS + 1) / 2 + BANDS + 1;
@@ -81,7 +82,8 @@ impl Ceilings {
         });
     }
 
-    /// An upper bound, as far as is probed, of the gain of a beam from each view-point of a group.
+    /// Returns an upper bound, as far as is probed, of the gain of a beam from each view-point of a
+    /// group.
     #[inline(always)]
     pub(super) fn bound(
         &self,
@@ -91,7 +93,7 @@ impl Ceilings {
     ) -> Lanes {
         let mut bound = [0.0; LANES];
         let stencil = beam.stencil();
-        // What ends beyond the present ring, by band.
+        // The probability of an echo from beyond the present ring, by band.
         let mut beyond = [[0.0; LANES]; BANDS];
         let mut is_beyond = [false; BANDS];
         let mut echoes = likelihood.echoes().iter().rev().peekable();
@@ -125,7 +127,7 @@ impl Ceilings {
     }
 }
 
-/// Σ of the ceilings of some of a beam's cells.
+/// Returns Σ of the ceilings of some of a beam's cells.
 #[inline(always)]
 fn sum(raster: &[f32], beam: &RasterBeam, cells: std::ops::Range<usize>, here: usize) -> Lanes {
     let mut sum = [0.0; LANES];
@@ -138,7 +140,7 @@ fn sum(raster: &[f32], beam: &RasterBeam, cells: std::ops::Range<usize>, here: u
     sum
 }
 
-/// Probabilities in the precision of gains.
+/// Converts probabilities to the precision of gains.
 #[inline(always)]
 fn narrow(probabilities: &Lanes64) -> Lanes {
     let mut narrow = [0.0; LANES];

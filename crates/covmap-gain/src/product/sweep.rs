@@ -2,13 +2,13 @@
 //!
 //! For each distance ring, nearest first:
 //!
-//! 1. *Need:* every beam that is asked for says which cells of the ring need which readings.
+//! 1. *Need:* every beam that is asked for names the readings that each cell of the ring needs.
 //! 2. *Fill:* the gains of these cells by these readings are found, [`LANES`] neighbouring cells of
 //!    a row side by side. They serve all view-points and beams that see the cells in this ring.
-//! 3. *Sum:* for each beam of each group, what the ring contributes to E\[I\] is summed over the
+//! 3. *Sum:* for each beam of each group, the part of the ring in E\[I\] is summed over the
 //!    beam's cells and the likely outcomes, [`LANES`] neighbouring view-points side by side.
 //!
-//! What a ring contributes is summed in f32, the rings in f64: gains of either sign nearly cancel.
+//! The part of a ring is summed in f32, the rings in f64: gains of either sign nearly cancel.
 
 mod planes;
 mod sums;
@@ -32,15 +32,16 @@ use pulp::Arch;
 use rayon::prelude::*;
 use swept::{SumRing, SweptRow};
 
-/// Fewer beams than this are worked at by one thread for each half of the rings: for each ring
-/// others are woken up twice, which took more than half of the time of an exploration by CL, whose
+/// Number of beams below which one thread works at each half of the rings. More threads are woken
+/// up twice for each ring, which took more than half of the time of an exploration by CL, whose
 /// reports have few beams.
 const SHARED: usize = 160;
 
-/// The number of readings that are kept for every cell, if the estimate of memory is right.
+/// The number of readings that are kept for every cell, as the estimate of memory assumes.
 const KEPT_READINGS: f64 = 40.0;
 
-/// Planes of more numbers than this, 16 MB, are not kept: decisions that need them are slow anyway.
+/// Largest number of gains in planes that are kept, 16 MB: decisions that need more are slow
+/// anyway.
 const KEPT_GAINS: usize = 1 << 22;
 
 /// Computes E\[I\] of many beams.
@@ -51,13 +52,13 @@ pub(super) struct Sweep {
     rings: Vec<DistanceRing>,
     /// For each ring.
     needs: Vec<RingNeeds>,
-    /// For each beam from a view-point to its cells in the planes.
+    /// For each beam the offsets from a view-point to its cells in the planes.
     offsets: Vec<Vec<isize>>,
     /// The outcome that is no echo.
     no_echo: usize,
     layout: Layout,
-    /// Kept, because fresh memory is slow: for the even rings and for the odd ones, which take about
-    /// the same time.
+    /// Planes of the even rings and of the odd ones, which take about the same time. They are kept,
+    /// because fresh memory is slow.
     planes: [GainPlanes; 2],
 }
 
@@ -81,7 +82,7 @@ impl Sweep {
         }
     }
 
-    /// About how many bytes this takes, with what its tables need while they are made.
+    /// Estimates the bytes of the sweep, with those that its tables need while they are made.
     pub(super) fn bytes(size: &Size) -> f64 {
         // A quarter turn of a ring mostly sees the same distances; each has a reading of its own
         // for every outcome that ends there: one, and on the border between two the other as well.
@@ -104,18 +105,18 @@ impl Sweep {
         self.basis.update(arch, belief, changed);
     }
 
-    /// How many rows of cells on either side of a row of view-points matter.
+    /// Returns the number of rows of cells on either side of a row of view-points that matter.
     pub(super) fn border(&self) -> usize {
         self.layout.border
     }
 
-    /// How the planes of gains lie.
+    /// Returns the layout of the planes of gains.
     pub(super) fn planes(&self) -> PlaneLayout {
         let Layout { border, stride, row } = self.layout;
         PlaneLayout { border, stride, row }
     }
 
-    /// The gains of all beams of some rows, which are given in ascending order of y.
+    /// Returns the gains of all beams of some rows, which are given in ascending order of y.
     pub(super) fn gains(
         &mut self,
         arch: Arch,
@@ -138,7 +139,7 @@ impl Sweep {
         gains
     }
 
-    /// What every second ring from the `first` on contributes to the gains.
+    /// Returns the part of every second ring from the `first` on in the gains.
     fn every_second_ring(
         &self,
         arch: Arch,
@@ -179,8 +180,8 @@ impl Sweep {
         swept.into_iter().map(SweptRow::gains).collect()
     }
 
-    /// Goes on to a ring with all beams. For every block of cells, from the row `low` − border on:
-    /// which readings of the ring they need.
+    /// Moves all beams on to a ring. Notes the readings of the ring that they need for every block
+    /// of cells, from the row `low` − border on.
     fn note_needs(
         &self,
         ring: &DistanceRing,

@@ -1,10 +1,10 @@
-//! What is found once for a model and a ring of sensors: which imagined readings are evaluated, and
-//! what each counts in all others.
+//! Tables that are made once for a model and a ring of sensors: the imagined readings that are
+//! evaluated, and their weights in all others.
 //!
-//! The tables are made from the bottom up, as the modules are listed. A *distance ring* is what all
-//! beams see at about one distance from a view-point ([`rings`]). An outcome is *near* a ring if it
-//! ends in it or before it, and *beyond* it if it ends farther away than all its cells. A cell lies
-//! *in front* of an end, *at* it or *behind* it; without an echo there is no end.
+//! The tables are made from the bottom up, as the modules are listed. A *distance ring* holds the
+//! cells of all beams at about one distance from a view-point ([`rings`]). An outcome is *near* a
+//! ring if it ends in it or before it, and *beyond* it if it ends farther away than all its cells.
+//! A cell lies *in front* of an end, *at* it or *behind* it; without an echo there is no end.
 //!
 //! | outcome | cells | the gain of a cell is |
 //! |---|---|---|
@@ -13,7 +13,7 @@
 //! | near, ends in the ring | in front, at the end and behind | that of its own distance |
 //! | no echo | all are free | interpolated over the distance |
 //!
-//! What is interpolated needs some readings at nodes; the readings at the nodes of all rings are
+//! An interpolation needs some readings at nodes; the readings at the nodes of all rings are
 //! mixtures of a few that are kept for every cell ([`basis`]).
 
 pub(super) mod interpolation;

@@ -8,7 +8,7 @@ use covmap_model::{ModelParameters, SensorModel};
 use covmap_sonar::{Beam, SonarRing};
 use nalgebra::{Isometry2, Point2};
 
-/// What is unknown reflects nothing.
+/// Unknown cells reflect nothing.
 pub(crate) const PLAIN: RangePrediction = RangePrediction {
     gain: InformationGain::Eq14,
     unknown_reflection: 0.0,
@@ -25,7 +25,7 @@ pub(crate) struct Corridor {
 }
 
 impl Corridor {
-    /// Nothing is known of the `cells`. `directions` are those of the rays [degrees].
+    /// Creates a corridor of unknown `cells`. `directions` are those of the rays [degrees].
     pub(crate) fn new(
         cells: usize,
         directions: &[f64],
@@ -47,7 +47,7 @@ impl Corridor {
         Self { map, model, prediction, cache }
     }
 
-    /// A cell has this posterior, and the cache knows.
+    /// Gives a cell this posterior, and tells the cache.
     pub(crate) fn know(&mut self, x: i32, posterior: &[f64]) {
         let cell = Cell::new(x, 0);
         let mut before = vec![0.0; posterior.len()];
@@ -57,7 +57,7 @@ impl Corridor {
         self.cache.update(&self.map, cell);
     }
 
-    /// A cell is free for good, and the cache knows.
+    /// Frees a cell for good, and tells the cache.
     pub(crate) fn pin(&mut self, x: i32) {
         self.map.pin_free(Cell::new(x, 0));
         self.cache.update(&self.map, Cell::new(x, 0));
@@ -68,20 +68,20 @@ impl Corridor {
         (index, ViewPoints::one(self.map.grid(), index))
     }
 
-    /// E[I] of a cell by the literal equations.
+    /// Returns E[I] of a cell by the literal equations.
     pub(crate) fn literal_gain(&self, x: i32) -> f64 {
         let (map, model, stencil) = (&self.map, &self.model, self.cache.stencil());
         expected_information_gain(map, model, stencil, self.prediction, Cell::new(x, 0))
     }
 
-    /// E[I] of a cell as it is cached.
+    /// Returns E[I] of a cell from the cache.
     pub(crate) fn gain(&mut self, x: i32) -> f64 {
         let (index, one) = self.one(x);
         self.cache.refresh_gains(&one);
         self.cache.gain(index)
     }
 
-    /// V(l): columns and distances.
+    /// Returns V(l): columns and distances.
     pub(crate) fn in_sight(&mut self, x: i32) -> Vec<(i32, f32)> {
         let (index, one) = self.one(x);
         self.cache.refresh_sight(&one);

@@ -12,10 +12,10 @@ use std::path::Path;
 /// The largest description that is read \[bytes\].
 const MAX_YAML: u64 = 64 << 10;
 
-/// The largest yaw, some 160,000 turns: the sine of more is no longer exact \[rad\].
+/// The largest yaw, some 160,000 turns \[rad\]: the sine of a larger yaw is no longer exact.
 const MAX_YAW: f64 = 1e6;
 
-/// How samples become occupancy.
+/// Rule by which samples become occupancy.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Mode {
     Trinary,
@@ -23,7 +23,7 @@ pub(crate) enum Mode {
     Raw,
 }
 
-/// A valid description, but for the image.
+/// A description that is valid, apart from the image.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Description {
     pub(crate) image: String,
@@ -31,7 +31,7 @@ pub(crate) struct Description {
     pub(crate) resolution: f64,
     /// The lower left corner of the lower left pixel \[m\].
     pub(crate) lower_left: Point2<f64>,
-    /// By how much the map is turned about that corner, counter-clockwise \[rad\].
+    /// Angle by which the map is turned about that corner, counter-clockwise \[rad\].
     pub(crate) yaw: f64,
     pub(crate) negate: bool,
     pub(crate) occupied: f64,
@@ -39,7 +39,7 @@ pub(crate) struct Description {
     pub(crate) mode: Mode,
 }
 
-/// The keys as they stand in the file. Others are passed over: people add their own.
+/// The keys as they stand in the file. Other keys are ignored: users add their own.
 #[derive(serde::Deserialize)]
 struct Keys {
     image: Option<String>,
@@ -51,7 +51,7 @@ struct Keys {
     mode: Option<String>,
 }
 
-/// `0`, `1`, or a truth value: all are found in the field.
+/// `0`, `1`, or a truth value: maps in the field have all of them.
 struct Negate(bool);
 
 impl<'de> Deserialize<'de> for Negate {
@@ -108,8 +108,7 @@ impl Description {
         let occupied = required(keys.occupied_thresh, "occupied_thresh")?;
         let free = required(keys.free_thresh, "free_thresh")?;
         let lower_left = Point2::new(x, y);
-        // A map of one cell stands for all that the image can be: the numbers are checked
-        // before the image is read.
+        // A grid of one cell stands for any image: the numbers are checked before the image is read.
         Grid::new(lower_left, resolution, 1, 1)?;
         if yaw.is_nan() || yaw.abs() > MAX_YAW {
             return Err(MapServerError::Yaw(yaw));
@@ -153,14 +152,14 @@ fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, F
     value.map_err(|error| fail(&error, field))
 }
 
-/// What is wrong, to one who wrote the file: the parser speaks to one who calls it.
+/// Words an error for the author of the file: the parser's own words are for its caller.
 fn in_words(error: &serde_saphyr::Error) -> String {
     use serde_saphyr::Error;
     match error {
         Error::DuplicateMappingKey { key: Some(key), .. } => {
             format!("the key `{key}` stands there twice")
         }
-        Error::MultipleDocuments { .. } => "a second document begins here: a map is one".into(),
+        Error::MultipleDocuments { .. } => "a second document begins here: a map has one".into(),
         Error::NullIntoString { .. } => "has no value".into(),
         Error::InvalidScalar { .. } => "expected a number".into(),
         Error::NonFiniteFloat { value, .. } => format!("{value} is no finite number"),
@@ -171,9 +170,9 @@ fn in_words(error: &serde_saphyr::Error) -> String {
             one_line(&format!("invalid value: {unexpected}, expected {expected}"))
         }
         Error::Unexpected { expected, .. } => format!("expected {expected}"),
-        Error::ExternalMessage { msg, .. } => format!("is no YAML: {}", one_line(msg)),
+        Error::ExternalMessage { msg, .. } => format!("is not YAML: {}", one_line(msg)),
         Error::Budget { .. } => "is nested too deeply, or too long, for a map".into(),
-        _ => "is not written as YAML wants it".into(),
+        _ => "is not valid YAML".into(),
     }
 }
 
@@ -191,7 +190,7 @@ mod tests {
         parse(Path::new("map.yaml"), text).map_err(|error| error.to_string()).and_then(describe)
     }
 
-    /// The sentence with which the good description is refused when a line is replaced.
+    /// Checks the sentence that refuses the good description with one line replaced.
     #[track_caller]
     fn refuse(key: &str, line: &str, expected: &str) {
         let replaced: Vec<&str> =

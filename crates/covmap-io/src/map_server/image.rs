@@ -18,7 +18,7 @@ impl From<DecodingError> for ImageError {
 pub(crate) struct Image<'a> {
     pub(crate) width: usize,
     pub(crate) height: usize,
-    /// What a white pixel has.
+    /// Sum of the colours of a white pixel.
     pub(crate) white: u32,
     format: Format<'a>,
 }
@@ -29,7 +29,7 @@ enum Format<'a> {
 }
 
 impl<'a> Image<'a> {
-    /// The image that a file holds.
+    /// Returns the image that a file holds.
     pub(crate) fn new(file: &'a [u8]) -> Result<Self, ImageError> {
         match file {
             [] => Err(ImageError::Empty),
@@ -52,7 +52,8 @@ impl<'a> Image<'a> {
 
     fn png(file: &'a [u8]) -> Result<Self, ImageError> {
         let mut decoder = Decoder::new_with_limits(Cursor::new(file), Limits { bytes: MAX_PNG });
-        // Palettes become colours, fewer bits than eight eight, a transparent colour alpha.
+        // Palettes become colours, samples of fewer than eight bits get eight, and a transparent
+        // colour becomes alpha.
         decoder.set_transformations(Transformations::EXPAND);
         decoder.set_ignore_text_chunk(true);
         decoder.set_ignore_iccp_chunk(true);
@@ -63,8 +64,8 @@ impl<'a> Image<'a> {
         Ok(Self { width, height, white, format: Format::Png(Box::new(png)) })
     }
 
-    /// Puts the next row into `row`: how white each pixel is, the sum of its colours, or `None`
-    /// where one can look through it.
+    /// Puts the next row into `row`: for each pixel the sum of its colours, or `None` if the pixel
+    /// is not opaque.
     pub(crate) fn next_row(&mut self, row: &mut Vec<Option<u32>>) -> Result<(), ImageError> {
         row.clear();
         match &mut self.format {
@@ -77,7 +78,7 @@ impl<'a> Image<'a> {
         }
     }
 
-    /// Checks what follows the last row.
+    /// Checks the data behind the last row.
     pub(crate) fn finish(self) -> Result<(), ImageError> {
         match self.format {
             Format::Png(mut png) => Ok(png.reader.finish()?),
@@ -88,14 +89,14 @@ impl<'a> Image<'a> {
 
 struct Png<'a> {
     reader: Reader<Cursor<&'a [u8]>>,
-    /// How many samples of a pixel are colours, and whether one more says how opaque it is.
+    /// Number of colour samples of a pixel; `has_alpha` tells of one more sample for opacity.
     colors: usize,
     has_alpha: bool,
     is_wide: bool,
-    /// A row; if rows are not stored in their order, the whole image.
+    /// One row; if rows are not stored in their order, the whole image.
     bytes: Vec<u8>,
     line: usize,
-    /// Where in `bytes` the next row begins, of an image whose rows are not in order.
+    /// Start of the next row in `bytes`, for an image whose rows are not in order.
     next: Option<usize>,
 }
 
@@ -121,12 +122,12 @@ impl<'a> Png<'a> {
         Ok(Self { reader, colors, has_alpha, is_wide, bytes, line, next })
     }
 
-    /// What one sample has at most.
+    /// Returns the largest value of a sample.
     fn largest(&self) -> u32 {
         if self.is_wide { 65535 } else { 255 }
     }
 
-    /// What the colours of a white pixel have in all.
+    /// Returns the sum of the colours of a white pixel.
     fn white(&self) -> u32 {
         if self.colors == 1 { self.largest() } else { 3 * self.largest() }
     }

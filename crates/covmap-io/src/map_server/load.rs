@@ -11,9 +11,9 @@ use nalgebra::{Isometry2, Vector2};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-/// Reads a map as map_server of Nav2 does: the YAML file, and the PNG or PGM image that it
-/// names, relative to its folder. An image that is not there, but beside the YAML file, is
-/// read from there: absolute paths come from other machines.
+/// Reads a map as map_server of Nav2 does: the YAML file, and the PNG or PGM image that it names,
+/// relative to its folder. An image that is not there is read from beside the YAML file, if it is
+/// there: absolute paths come from other machines.
 ///
 /// With x the mean of a pixel's colours over that of white, `negate` taking x to 1 − x, and
 /// p = 1 − x:
@@ -24,15 +24,14 @@ use std::path::{Path, PathBuf};
 /// raw       255 · x, rounded, is the occupancy in percent; unknown above 100
 /// ```
 ///
-/// A pixel that one can look through, be it a little, is unknown. Keys that map_server does not
-/// know are passed over.
+/// A pixel that is not fully opaque is unknown. Keys that map_server does not know are ignored.
 ///
-/// What is unknown around all that is known is cut away, since a map of ROS is unknown beyond
-/// its image as well. The origin's yaw turns the map.
+/// The unknown border around all known pixels is cut away, since a map of ROS is unknown beyond its
+/// image as well. The origin's yaw turns the map.
 ///
 /// # Errors
-/// If the description or the image is missing, cut short, too large, or says something
-/// impossible; or if all is unknown. Every error names the YAML file.
+/// If the description or the image is missing, cut short, too large, or says something impossible;
+/// or if all pixels are unknown. Every error names the YAML file.
 pub fn load_map_server(yaml: impl AsRef<Path>) -> Result<MapServerMap, FileError> {
     let path = yaml.as_ref();
     let description = Description::load(path)?;
@@ -60,10 +59,10 @@ pub fn load_map_server(yaml: impl AsRef<Path>) -> Result<MapServerMap, FileError
     Ok(map)
 }
 
-/// Where an image is.
+/// Place of an image.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Found {
-    /// Where the description says, if anywhere: without a folder, that is beside it.
+    /// Where the description says; a name without a folder always counts as this.
     There,
     /// Beside the YAML file.
     Beside,
@@ -71,7 +70,7 @@ enum Found {
     Nowhere,
 }
 
-/// The image that a YAML file names, with the folders of any system.
+/// Returns the place of the image that a YAML file names, with path separators of any system.
 fn find_image(yaml: &Path, named: &str) -> (PathBuf, Found) {
     let folder = yaml.parent().unwrap_or(Path::new(""));
     let there = folder.join(named);
@@ -89,18 +88,18 @@ struct Source<'a> {
     file: &'a [u8],
 }
 
-/// What a look at all pixels found.
+/// The results of a pass over all pixels.
 #[derive(Default)]
 struct Known {
     image_size: (usize, usize),
-    /// The columns and the rows, from the lower left, of what is known; none at first.
+    /// The columns and the rows of the known pixels, from the lower left; empty at first.
     columns: Range<usize>,
     rows: Range<usize>,
     areas: MapAreas,
 }
 
 impl Known {
-    /// The grid of what is known.
+    /// Returns the grid of the known pixels.
     fn grid(&self, description: &Description) -> Result<Grid, MapServerError> {
         let Self { columns, rows, image_size, .. } = self;
         if rows.is_empty() {
@@ -113,8 +112,8 @@ impl Known {
 }
 
 impl Source<'_> {
-    /// Calls `each` with the number of every row, the lowest being the first, and its pixels.
-    /// The rows come from the top. Returns columns and rows.
+    /// Calls `each` with the number of every row, counted from the lowest, and its pixels. The rows
+    /// come from the top. Returns the numbers of columns and rows.
     fn each_row(
         &self,
         each: &mut dyn FnMut(usize, &[Pixel]),
@@ -174,7 +173,7 @@ impl Source<'_> {
     }
 }
 
-/// Widens a range, empty at first, such that it holds a number.
+/// Widens a range, empty at first, to hold a number.
 fn include(range: &mut Range<usize>, number: usize) {
     *range = if range.start >= range.end {
         number..number + 1
@@ -186,15 +185,15 @@ fn include(range: &mut Range<usize>, number: usize) {
 /// The p of the grey that programs give to unknown cells, 205 of 255 \[1/255\].
 const UNKNOWN_GREY: u32 = 50;
 
-/// What a pixel says.
+/// The content of a pixel.
 struct Pixel {
     cell: MapCell,
-    /// Whether it is as grey as unknown cells are.
+    /// Whether the pixel is as grey as unknown cells are.
     is_unknown_grey: bool,
 }
 
 impl Pixel {
-    /// The pixel that has `white` of all that is `full` white, or nothing opaque.
+    /// Returns the pixel with `white` of `full` white; `None` is a pixel that is not opaque.
     fn new(description: &Description, white: Option<u32>, full: u32) -> Self {
         let Some(white) = white else {
             return Self { cell: MapCell::Unknown, is_unknown_grey: false };

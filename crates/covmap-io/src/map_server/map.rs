@@ -1,25 +1,25 @@
-//! What a map of ROS says.
+//! The content of a map of ROS.
 
 use covmap::{Cell, Grid, Raster};
 use nalgebra::{Isometry2, Point2, Vector2};
 use std::f64::consts::FRAC_PI_2;
 use std::path::PathBuf;
 
-/// A yaw that moves no cell by more than this share of a cell from a whole number of quarter
-/// turns is one, written with few digits.
+/// A yaw counts as a whole number of quarter turns, written with few digits, if no cell moves by
+/// more than this share of a cell from there.
 const ROUNDED: f64 = 0.25;
 
-/// What a map says of one cell.
+/// The content of one cell.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum MapCell {
-    /// Nothing.
+    /// Nothing is known.
     Unknown,
-    /// How occupied it is, in [0, 1]: free 0, occupied 1.
+    /// Occupancy in [0, 1]: free 0, occupied 1.
     Occupancy(f64),
 }
 
 impl MapCell {
-    /// Whether a robot cannot be there: in occupied and in unknown cells.
+    /// Returns whether a robot cannot be there: in occupied and in unknown cells.
     ///
     /// Reading: a cell of graded occupancy (`scale`, `raw`) is occupied from one half on.
     pub fn is_solid(self) -> bool {
@@ -30,47 +30,47 @@ impl MapCell {
     }
 }
 
-/// How much of the image is what \[m²\], also where it was cut away.
+/// Areas of the free, occupied and unknown parts of the image \[m²\], including the parts that were cut away.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct MapAreas {
-    /// Free.
+    /// Free area.
     pub free: f64,
-    /// Occupied.
+    /// Occupied area.
     pub occupied: f64,
-    /// Unknown.
+    /// Unknown area.
     pub unknown: f64,
-    /// The part of the free area that is painted in the grey which programs that save maps
-    /// give to unknown cells: the thresholds make it free.
+    /// The part of the free area that is painted in the grey that map-saving programs give to
+    /// unknown cells: the thresholds make it free.
     pub unknown_grey_is_free: f64,
 }
 
-/// A map of ROS: what map_server would publish of it, without what is unknown around it.
+/// A map of ROS: as map_server would publish it, without the unknown border.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MapServerMap {
-    /// The geometry, before the map is turned: one cell for each pixel of the smallest
-    /// rectangle of the image that holds all that is known.
+    /// The geometry, before `world_from_map` turns the map: one cell for each pixel of the smallest
+    /// rectangle of the image that holds all known pixels.
     pub grid: Grid,
-    /// What the map says of each cell.
+    /// The content of each cell.
     pub cells: Raster<MapCell>,
-    /// Turns the map about the origin that its file names; the identity for a yaw of 0. Quarter
-    /// turns are in `cells` already.
+    /// Turns the map about the origin that its file names; the identity if the yaw is a whole
+    /// number of quarter turns, which are in `cells` already.
     pub world_from_map: Isometry2<f64>,
-    /// How much of the image is free, occupied, unknown.
+    /// Areas of the free, occupied and unknown parts of the image.
     pub areas: MapAreas,
     /// Columns and rows of the image.
     pub image_size: (usize, usize),
-    /// The image that was read, if it is not where the file says but beside the file.
+    /// Path of the image that was read, if it was found beside the YAML file and not where the file says.
     pub image_beside: Option<PathBuf>,
 }
 
 impl MapServerMap {
-    /// Where a robot cannot be: in occupied and in unknown cells.
+    /// Returns the cells where a robot cannot be: occupied and unknown ones.
     pub fn solid(&self) -> Raster<bool> {
         self.cells.map(|cell| cell.is_solid())
     }
 
-    /// Turns a map that is not turned yet about a point, counter-clockwise \[rad\]: cells as
-    /// far as quarter turns go, and the whole map by what is left.
+    /// Turns a map that is not turned yet about a point, counter-clockwise \[rad\]: its cells for a
+    /// whole number of quarter turns, else the whole map.
     pub(super) fn turn(&mut self, origin: Point2<f64>, yaw: f64) {
         let quarters = (yaw / FRAC_PI_2).round();
         let rest = yaw - quarters * FRAC_PI_2;
@@ -91,13 +91,13 @@ impl MapServerMap {
     }
 }
 
-/// The cell whose lower corner is the upper corner of a grid.
+/// Returns the cell whose lower corner is the upper corner of a grid.
 #[allow(clippy::cast_possible_truncation, reason = "a grid has at most 2e7 cells")]
 fn beyond(grid: &Grid) -> Cell {
     Cell::new(grid.width() as i32, grid.height() as i32)
 }
 
-/// A raster turned by 90° about a point, counter-clockwise.
+/// Returns a raster turned by 90° about a point, counter-clockwise.
 fn quarter_turned<T: Copy>(cells: &Raster<T>, origin: Point2<f64>) -> Option<Raster<T>> {
     let (grid, Cell { x: width, y: height }) = (cells.grid(), beyond(cells.grid()));
     let upper_left = grid.lower_corner(Cell::new(0, height)) - origin;

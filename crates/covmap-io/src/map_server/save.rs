@@ -6,29 +6,28 @@ use crate::pgm::pgm_bytes;
 use covmap::{Cell, CoverageMap};
 use std::path::Path;
 
-/// When a cell is free or occupied for other software; all else is unknown to it.
+/// Thresholds by which a cell is free or occupied to other software; all other cells are unknown to it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MapThresholds {
     /// Above this entropy a cell is not free \[nats\].
     pub entropy: f64,
-    /// Above this entropy a cell is not occupied \[nats\]. What is most likely in the way is
-    /// better taken for an obstacle, however uncertain it is: infinite, unless somebody asks.
+    /// Above this entropy a cell is not occupied \[nats\]. Infinite, unless the user sets it: a
+    /// cell that is most likely occupied is better taken for an obstacle, however uncertain it is.
     pub occupied_entropy: f64,
-    /// Up to this coverage, the most likely one, a cell is free.
+    /// Up to this most likely coverage a cell is free.
     pub free: f64,
-    /// From this coverage on, the most likely one, a cell is occupied, even if it is not above
-    /// `free`.
+    /// From this most likely coverage on a cell is occupied, even if the coverage is not above `free`.
     pub occupied: f64,
 }
 
-/// How many cells of a map are what to other software.
+/// Numbers of free, occupied and unknown cells to other software.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct MapCounts {
-    /// A robot may drive there.
+    /// Cells where a robot may drive.
     pub free: usize,
-    /// A robot may not.
+    /// Cells where a robot may not drive.
     pub occupied: usize,
-    /// Nobody knows.
+    /// All other cells.
     pub unknown: usize,
 }
 
@@ -37,16 +36,16 @@ const UNKNOWN: u8 = 205;
 const FREE: u8 = 254;
 
 impl MapThresholds {
-    /// The largest entropy of a cell that is free, in a map of n bins \[nats\]:
-    /// `entropy`, but at most ½ ln n. There a posterior is as wide as a uniform one over √n
-    /// bins: a cell above that rests on next to nothing, whatever `entropy` says.
+    /// Returns the largest entropy of a free cell, in a map of n bins \[nats\]: `entropy`, but at
+    /// most ½ ln n. At ½ ln n a posterior is as wide as a uniform one over √n bins: a cell above
+    /// that rests on next to nothing, whatever `entropy` says.
     pub fn largest_entropy(&self, bins: usize) -> f64 {
         let next_to_nothing = 0.5 * libm::log(bins as f64);
         self.entropy.min(next_to_nothing)
     }
 
-    /// The largest entropy of a cell that is occupied \[nats\]: `occupied_entropy`, but at most
-    /// .95 ln n, for a posterior that is all but uniform says nothing.
+    /// Returns the largest entropy of an occupied cell \[nats\]: `occupied_entropy`, but at most
+    /// .95 ln n, since a posterior that is all but uniform says nothing.
     pub fn largest_occupied_entropy(&self, bins: usize) -> f64 {
         let all_but_uniform = 0.95 * libm::log(bins as f64);
         self.occupied_entropy.min(all_but_uniform)
@@ -68,7 +67,7 @@ impl MapThresholds {
         }
     }
 
-    /// What it was that made cells free and occupied, a line each.
+    /// Describes the rules for free, occupied and unknown cells, a line each.
     fn in_words(&self, map: &CoverageMap) -> String {
         let rounded = |entropy: f64| (1e4 * entropy).round() / 1e4;
         let entropy = rounded(self.largest_entropy(map.bins()));
@@ -85,9 +84,9 @@ impl MapThresholds {
     }
 }
 
-/// Writes `STEM.pgm` and `STEM.yaml` into a folder, such that map_server, and
-/// [`load_map_server`](crate::load_map_server), read a map that is safe to drive by. Returns
-/// how many cells are what.
+/// Writes `STEM.pgm` and `STEM.yaml` into a folder. From them map_server, and
+/// [`load_map_server`](crate::load_map_server), read a map that is safe to drive by. Returns the
+/// numbers of free, occupied and unknown cells.
 ///
 /// ```text
 /// free       grey 254   the cell is known, its entropy at most `entropy` (and ½ ln n),
@@ -98,8 +97,8 @@ impl MapThresholds {
 /// unknown    grey 205   all else: (255 − 205)/255 = .196078 > .196, the `free_thresh`
 /// ```
 ///
-/// Comments in both files say with which thresholds that was. The mode is trinary and says so:
-/// read in mode `scale`, grey 205 would be nearly free.
+/// Comments in both files name the thresholds. The YAML file says that the mode is trinary: read in
+/// mode `scale`, grey 205 would be nearly free.
 ///
 /// # Errors
 /// If a file cannot be written, or the stem has characters that would need quotes in YAML.
@@ -150,7 +149,7 @@ mod tests {
     const THRESHOLDS: MapThresholds =
         MapThresholds { entropy: 0.6, occupied_entropy: 0.6, free: 0.2, occupied: 0.5 };
 
-    /// A map of 11 bins, a row of cells, each with this share of its probability in one bin and
+    /// Returns a row of cells of 11 bins, each with this share of its probability in one bin and
     /// the rest spread over all others; `None` is a cell that nothing touched.
     fn row_of(cells: &[Option<(usize, f64)>]) -> CoverageMap {
         let grid = Grid::new(Point2::new(-3.25, 1.0 / 3.0), 0.1, cells.len(), 1).unwrap();
@@ -164,7 +163,7 @@ mod tests {
         map
     }
 
-    /// The greys of the image, and the counts.
+    /// Returns the greys of the image, and the counts.
     fn save(map: &CoverageMap, thresholds: &MapThresholds) -> (Vec<u8>, MapCounts) {
         let folder = tempfile::tempdir().unwrap();
         let counts = save_map_server(folder.path(), "map", map, thresholds, |_| true).unwrap();

@@ -78,13 +78,13 @@ fn another_run_is_replaced_only_if_that_is_meant_and_then_whole() {
     let error = other(Replace::Same).unwrap_err().to_string();
     assert!(error.contains("out: holds another run (lab, seed 1)"), "{error}");
     assert!(error.contains("--out") && error.contains("--force"), "{error}");
-    // Nor is what it left unfinished.
+    // Nor is an unfinished folder of another run.
     fs::rename(&dir, beside(&dir, ".partial")).unwrap();
     assert!(other(Replace::Same).unwrap_err().to_string().contains("out.partial: holds another"));
     fs::rename(beside(&dir, ".partial"), &dir).unwrap();
     other(Replace::Any).unwrap().finish().unwrap();
     assert_eq!(names(&dir), [".covmap"]);
-    // The folders of earlier versions say no run.
+    // The folders of earlier versions name no run.
     fs::write(dir.join(MARKER), "covmap wrote this folder, and replaces it whole.\n").unwrap();
     fs::write(dir.join("a.txt"), "").unwrap();
     refuse(&dir, "out: holds a run of an earlier covmap");

@@ -1,4 +1,4 @@
-//! What a file is that was given as a world and is none, and what reads it.
+//! The kind of a file that was given as a world and is none, and the command that reads it.
 
 use crate::error::{Fault, LabError, about};
 use covmap_io::{Signature, read_beginning, read_ron, signature};
@@ -7,17 +7,17 @@ use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::path::Path;
 
-/// How much of a file is looked at \[bytes\].
+/// Length of a file's beginning that tells its kind \[bytes\].
 const BEGINNING: usize = 4096;
 const NEITHER: &str = "a world is a scenario (.ron) or a map of map_server (.yaml)";
 
-/// What is said of a file that could be a world by its name, and is none: what else it is, if
-/// that can be told, and what reads it.
+/// The error for a file that could be a world by its name, and is none: the kind of the file and the
+/// command that reads it, if the kind can be told.
 pub(super) fn explained(file: &Path, fault: LabError) -> LabError {
     in_words(file, of_ron(file).or_else(|| of_content(file))).unwrap_or(fault)
 }
 
-/// What is said of a file or folder whose name has no ending that a world has.
+/// The error for a file or folder whose name does not have the ending of a world.
 pub(super) fn no_world(file: &Path) -> LabError {
     if let Some(error) = in_words(file, of_folder(file)) {
         return error;
@@ -106,11 +106,11 @@ fn of_folder(folder: &Path) -> Option<Kind> {
 }
 
 const BAGS: &str = "nothing here reads bags; write its scans and odometry as a log of CARMEN, \
-                    of which `cargo xtask map` makes a map";
+                    from which `cargo xtask map` makes a map";
 const PLANS: &str = "nothing here reads it; draw it as a PNG or PGM image, and describe that in a \
                      YAML file as map_server does, or write its walls as a scenario (.ron)";
 
-/// Endings that say what a file is when its content does not.
+/// Endings that tell the kind of a file when its content does not.
 const ENDINGS: [(&[&str], &str, &str); 8] = [
     (&["bag"], "a bag of ROS 1", BAGS),
     (&["db3", "mcap"], "a bag of ROS 2", BAGS),

@@ -1,4 +1,4 @@
-//! Worlds from files, and what there is to say about them.
+//! Worlds from files, and remarks on the files.
 
 use super::kind;
 use crate::error::{Fault, Result, about};
@@ -6,31 +6,32 @@ use covmap_io::{MAX_FILE, MapServerMap, load_map_server, read_bytes, read_ron};
 use covmap_world::{Scenario, Surface, World};
 use std::path::Path;
 
-/// A world, and what there is to say about the file that it was read from.
+/// A world, and remarks on its file.
 #[derive(Debug)]
 pub struct WorldFile {
     /// The world.
     pub world: World,
-    /// What there is to say about its file.
+    /// Remarks on the file.
     pub remarks: Remarks,
-    /// What tells it from others: a scenario's file, or which cells of a map are solid.
+    /// Bytes that tell the world from others: the file of a scenario, or a byte for each cell of a map,
+    /// 1 if the cell is solid.
     pub bytes: Vec<u8>,
 }
 
-/// What there is to say about a map of map_server; nothing about a scenario.
+/// Remarks on a map of map_server; empty for a scenario.
 #[derive(Debug, Default)]
 pub struct Remarks {
-    /// How much of it is free, occupied, unknown.
+    /// The free, occupied and unknown areas of the map, in words.
     pub areas: Option<String>,
-    /// What its owner may not know.
+    /// Warnings to the owner of the map.
     pub warnings: Vec<String>,
 }
 
-/// The world in a scenario or in a map of map_server. What a file does not say about
-/// surfaces is `surface`.
+/// Reads the world in a scenario or in a map of map_server. `surface` is the surface of everything
+/// without one in the file.
 ///
 /// # Errors
-/// If the file is no world; what else it is, and what reads it, is said.
+/// If the file is no world; the error says what else it is, and which command reads it.
 pub fn read(file: &Path, surface: Surface) -> Result<WorldFile> {
     let extension = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
     match extension.as_str() {
@@ -52,18 +53,18 @@ pub fn read(file: &Path, surface: Surface) -> Result<WorldFile> {
     }
 }
 
-/// The scenario in a file.
+/// Reads the scenario in a file.
 ///
 /// # Errors
-/// If there is none.
+/// If the file is no scenario.
 pub fn scenario(file: &Path) -> Result<Scenario> {
     read_ron(file).map_err(|error| kind::explained(file, error.into()))
 }
 
-/// The map of map_server in a file.
+/// Reads the map of map_server in a file.
 ///
 /// # Errors
-/// If there is none, or nothing in it is free.
+/// If the file is no map, or no area of the map is free.
 pub fn map(file: &Path) -> Result<MapServerMap> {
     let map = load_map_server(file).map_err(|error| kind::explained(file, error.into()))?;
     if map.areas.free <= 0.0 {
@@ -80,7 +81,7 @@ fn areas(map: &MapServerMap) -> String {
     )
 }
 
-/// What there is to say about a map.
+/// Returns remarks on a map.
 pub fn remarks(file: &Path, map: &MapServerMap) -> Remarks {
     let (name, size, image) = (file.display(), &map.grid, map.image_size);
     let mut line = format!("{name}: {}", areas(map));
@@ -108,7 +109,7 @@ pub fn remarks(file: &Path, map: &MapServerMap) -> Remarks {
     if free > 0.0 {
         warnings.push(format!(
             "{name}: its thresholds make the grey of unknown cells (205) free: {free:.2} m² that \
-             perhaps nobody has seen are free in this world; with `mode: trinary` and \
+             perhaps were never seen are free in this world; with `mode: trinary` and \
              `free_thresh: 0.196` they are unknown"
         ));
     }

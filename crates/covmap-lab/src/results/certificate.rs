@@ -1,4 +1,4 @@
-//! `certificate.csv`: of every cell what became of it, and what one more scan could change.
+//! `certificate.csv`: the status of each cell, and the largest expected change by one more scan.
 
 use crate::error::{Fault, Result, about};
 use covmap::{Cell, Grid};
@@ -10,12 +10,12 @@ use nalgebra::Point2;
 use std::io::Write;
 use std::path::Path;
 
-/// A file with more bytes is of no map that covmap makes.
+/// Largest size of a certificate's file \[bytes\]; covmap makes no larger map.
 const LONGEST: u64 = 4 << 30;
 
 const HEADER: &str = "x,y,status,entropy,counted_scans,expected_change,from_x,from_y";
 
-/// Writes it: places in metres, entropies and changes in nats; empty where there is no number.
+/// Writes the certificate: places in metres, entropies and changes in nats; empty where there is no number.
 pub fn write(path: &Path, run: &Run) -> Result<(), FileError> {
     csv::write(path, |file| {
         writeln!(file, "{HEADER}")?;
@@ -37,7 +37,7 @@ pub fn write(path: &Path, run: &Run) -> Result<(), FileError> {
     })
 }
 
-/// Why the cell at a place is as it is, in a sentence, by the file of a run on a grid.
+/// Explains the status of the cell at a place \[m\] in a sentence, by the file of a run on a grid.
 pub fn why(path: &Path, grid: &Grid, at: Point2<f64>) -> Result<String> {
     let cell = grid.cell_at(at).filter(|cell| grid.index(*cell).is_some());
     let cell = cell.ok_or(Fault::NotInMap { x: at.x, y: at.y })?;

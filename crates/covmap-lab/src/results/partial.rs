@@ -1,4 +1,4 @@
-//! Coverage beside truth beside occupancy, where a run met walls that cut through cells.
+//! Truth, coverage and occupancy side by side, where a run met walls that cut through cells.
 
 use super::pictures::occupancy_of;
 use crate::error::Result;
@@ -7,10 +7,10 @@ use covmap::{Cell, Class, CoverageMap, Raster};
 use covmap_draw::{ChartAxis, ColorMap, Figure, HeatMap};
 use covmap_explore::{Mission, Run};
 
-/// The side of the window \[m\].
+/// Side of the window \[m\].
 const SIDE: f64 = 4.0;
 
-/// The window that is shown: as many cells to the right and upwards of its lower left one.
+/// The window of the picture: `side` cells to the right and upwards from its lower left cell.
 struct Window {
     corner: Cell,
     side: i32,
@@ -22,8 +22,8 @@ impl Window {
         (0..side).flat_map(move |y| (0..side).map(move |x| corner.offset(x, y)))
     }
 
-    /// Where the cells in part covered that the map knows show most: many, and of many coverages,
-    /// as along an oblique wall.
+    /// The window with the most to show of partly covered cells that the map knows: many cells, and of many
+    /// coverages, as along an oblique wall.
     fn of(truth: &Truth, run: &Run) -> Self {
         let grid = run.map.grid();
         let cells = (SIDE / grid.resolution()).round().clamp(4.0, 400.0);

@@ -14,10 +14,10 @@ const START_SIZE: f64 = 16.0;
 const END_SIZE: f64 = 24.0;
 const CUT_SIZE: f64 = 22.0;
 const BUMP_SIZE: f64 = 7.0;
-/// A cell of which at least this much is covered is a wall.
+/// Least coverage of a wall.
 const HALF: f64 = 0.5;
 
-/// What the map makes of a cell, against the truth.
+/// The map's belief about a cell against the truth.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Verdict {
     Wall,
@@ -43,7 +43,7 @@ impl Verdict {
         }
     }
 
-    /// Told apart by brightness, too.
+    /// The colours also differ in brightness.
     fn color(self) -> Rgb {
         match self {
             Self::Wall => Rgb(60, 66, 76),
@@ -56,7 +56,7 @@ impl Verdict {
     }
 }
 
-/// All that the pictures of a run show.
+/// Pictures of a run.
 #[derive(Debug)]
 pub struct Pictures<'a> {
     /// The mission of the run.
@@ -65,16 +65,16 @@ pub struct Pictures<'a> {
     pub run: &'a Run,
     /// The map as it is read.
     pub map: &'a CoverageMap,
-    /// How that is, in words; may be empty.
+    /// The way the map is read, in words; may be empty.
     pub how: &'a str,
-    /// The truth about its world.
+    /// The truth about the world.
     pub truth: &'a Truth,
-    /// Its numbers.
+    /// The numbers of the run.
     pub summary: &'a Summary,
 }
 
 impl Pictures<'_> {
-    /// What the run was, in words.
+    /// Returns a description of the run in words.
     pub fn of(&self) -> String {
         let Summary { strategy, update, seed, resolution, scans, .. } = self.summary;
         let (driven, ending) = (self.summary.path_length_m, self.summary.ending);
@@ -91,7 +91,7 @@ impl Pictures<'_> {
         picture
     }
 
-    /// The most likely coverage, and the path.
+    /// Draws the most likely coverage, and the path.
     pub fn coverage(&self) -> Picture {
         let mut picture = self.begin(&format!("most likely coverage{}", self.how));
         draw_coverage(&mut picture, self.map, self.mission.config.planner.entropy_threshold);
@@ -105,14 +105,14 @@ impl Pictures<'_> {
         picture
     }
 
-    /// How uncertain each cell is.
+    /// Draws the entropy of each cell.
     pub fn entropy(&self) -> Picture {
         let mut picture = self.begin(&format!("entropy of the coverage{}", self.how));
         draw_entropy(&mut picture, self.map);
         picture
     }
 
-    /// What there truly is.
+    /// Draws the true coverage of each cell.
     pub fn truth(&self) -> Picture {
         let mut picture = Picture::new(self.mission.grid);
         let Summary { world, resolution, .. } = self.summary;
@@ -125,7 +125,7 @@ impl Pictures<'_> {
         picture
     }
 
-    /// The map against the truth, and where the robot bumped.
+    /// Draws the map against the truth, and the places where the robot bumped.
     pub fn errors(&self, bumps: &[Point2<f64>]) -> Picture {
         let mut picture = self.begin(&format!("the map against the truth{}", self.how));
         let verdicts = Raster::from_fn(self.mission.grid, |cell| self.verdict(cell));
@@ -159,7 +159,7 @@ impl Pictures<'_> {
         }
     }
 
-    /// The log-odds occupancy grid of the same scans.
+    /// Draws the log-odds occupancy grid of the same scans.
     pub fn occupancy(&self) -> Result<Picture> {
         let occupancy = occupancy_of(self.mission, self.run)?;
         let mut picture = self.begin("log-odds occupancy grid of the same scans");
@@ -167,7 +167,7 @@ impl Pictures<'_> {
         Ok(picture)
     }
 
-    /// Why there is nothing left to do, cell by cell.
+    /// Draws the certificate: the status of each cell.
     pub fn certificate(&self) -> Picture {
         let counts = self.summary.cells;
         let mut picture = self.begin("certificate");
@@ -194,7 +194,7 @@ impl Pictures<'_> {
     }
 }
 
-/// The most likely coverage of each cell. What is not `explored` well enough \[nats\] fades.
+/// Draws the most likely coverage of each cell. Cells with an entropy above `explored` \[nats\] fade.
 pub fn draw_coverage(picture: &mut Picture, map: &CoverageMap, explored: f64) {
     picture
         .cells(&faded(map, explored), |color| *color)
@@ -213,7 +213,7 @@ pub(super) fn occupancy_of(mission: &Mission, run: &Run) -> Result<OccupancyGrid
     Ok(occupancy)
 }
 
-/// The entropy of each cell.
+/// Draws the entropy of each cell.
 pub fn draw_entropy(picture: &mut Picture, map: &CoverageMap) {
     let most = most_entropy(map);
     picture.cells(&map.entropy_map(), |entropy| ColorMap::Viridis.color(entropy / most)).color_bar(
@@ -224,7 +224,7 @@ pub fn draw_entropy(picture: &mut Picture, map: &CoverageMap) {
     );
 }
 
-/// The probability that each cell is occupied.
+/// Draws the probability that each cell is occupied.
 pub fn draw_occupancy(picture: &mut Picture, occupancy: &OccupancyGrid) {
     picture
         .cells(&occupancy.probabilities(), |p| coverage_color(*p))
@@ -232,7 +232,7 @@ pub fn draw_occupancy(picture: &mut Picture, occupancy: &OccupancyGrid) {
         .legend(&[(Rgb::UNKNOWN, "unknown")]);
 }
 
-/// A trajectory with its start, and its end with the heading there.
+/// Draws a trajectory with its start and its end, and the heading at the end.
 pub fn draw_path(
     picture: &mut Picture,
     path: &[Point2<f64>],
@@ -249,15 +249,15 @@ pub fn draw_path(
         .key(Key::Marker(arrow, Rgb::RED), "end");
 }
 
-/// Marks the end of a path that would be longer if the run had explored all.
+/// Marks the end of a path that is cut short, as the run did not explore everything.
 pub fn mark_cut_short(picture: &mut Picture, end: Point2<f64>) {
     picture
         .marker(end, Marker::Cross, Rgb::RED, CUT_SIZE)
         .key(Key::Marker(Marker::Cross, Rgb::RED), "cut short here");
 }
 
-/// The colour of the most likely coverage of each cell. What is not explored well enough
-/// (H > ε) fades towards the colour of what nobody knows.
+/// Returns the colour of the most likely coverage of each cell. Cells that are not explored well enough
+/// (H > ε) fade towards the colour of unknown cells.
 pub fn certain_coverage(map: &CoverageMap, mission: &Mission) -> Raster<Rgb> {
     faded(map, mission.config.planner.entropy_threshold)
 }
@@ -271,12 +271,12 @@ fn faded(map: &CoverageMap, explored: f64) -> Raster<Rgb> {
     })
 }
 
-/// The entropy of a cell of which nothing is known, ln n \[nats\].
+/// The entropy of an unknown cell, ln n \[nats\].
 fn most_entropy(map: &CoverageMap) -> f64 {
     libm::log(map.bins() as f64)
 }
 
-/// Told apart by brightness, too.
+/// The colours also differ in brightness.
 fn status_color(status: CellStatus) -> Rgb {
     match status {
         CellStatus::Resolved => Rgb(196, 226, 198),

@@ -1,13 +1,15 @@
-//! Charts of whether a map knows how right it is.
+//! Charts of the reliability of a map.
 
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Panel, Series};
 use covmap_fit::Reliability;
 
-/// A band with fewer cells is drawn hollow.
+/// Number of cells below which a band is drawn hollow.
 const FEW: usize = 50;
 
-/// For each of some maps two panels: what the intervals of every class hold, and the error of
-/// cells by their entropy. `of` says which cells they are, of maps with `bins` bins.
+/// Draws two panels for each of some maps: the shares of truths in the intervals of every class, and
+/// the error of cells by their entropy.
+///
+/// `of` describes the cells; the maps have `bins` bins.
 pub fn figure(of: &str, maps: &[(&str, &Reliability)], bins: usize) -> Figure {
     let panels = maps.iter().flat_map(|(name, reliability)| {
         [Panel::from(intervals(name, reliability)), errors(name, reliability, bins).into()]

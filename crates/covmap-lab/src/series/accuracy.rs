@@ -1,4 +1,4 @@
-//! How accurate a map is, by the class of the cells, and how certain.
+//! The accuracy of a map, by the class of the cells, and its certainty.
 
 use crate::Truth;
 use crate::score::mean;
@@ -6,18 +6,17 @@ use covmap::{Cell, Class, CoverageMap};
 use covmap_explore::Mission;
 use covmap_statistics::crps;
 
-/// Above this entropy a cell is not explored well enough in Table 1 \[nats\].
+/// Entropy above which a cell is not explored well enough in Table 1 \[nats\].
 const TABLE_1: f64 = 0.65;
 
-/// How far a map is from the truth, and how much of it is certain.
+/// Errors of a map against the truth, and the shares of its cells that are certain.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Accuracy {
-    /// Over the scored cells: what this run could see.
+    /// Errors over the scored cells, which this run could see.
     pub scored: Errors,
-    /// Over the compared cells: the same for every run in a world.
+    /// Errors over the compared cells, which are the same for every run in a world.
     pub compared: Errors,
-    /// Mean absolute error of the most likely coverage over the compared cells; what is not known
-    /// counts as ½.
+    /// Mean absolute error of the most likely coverage over the compared cells; an unknown cell counts as ½.
     pub mae_observable: f64,
     /// Mean log-likelihood of the true coverage over the compared cells \[nats\].
     pub log_likelihood_observable: f64,
@@ -26,22 +25,22 @@ pub struct Accuracy {
     /// The share of the observable cells with an entropy above .65: Table 1, over the same
     /// cells for every technique.
     pub share_uncertain: f64,
-    /// How many cells are observable.
+    /// The number of observable cells.
     pub observable_cells: f64,
-    /// How many cells are compared.
+    /// The number of compared cells.
     pub compared_cells: f64,
 }
 
-/// Errors of a whole posterior over some cells. What the map does not know is uniform.
+/// Errors of the whole posterior over some cells. The posterior of an unknown cell is uniform.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Errors {
     /// Mean continuous ranked probability score.
     pub crps: f64,
     /// Mean absolute error of the expected coverage over the cells of coverage 0.
     pub mae_free: f64,
-    /// ... of a coverage between 0 and 1.
+    /// The same over the cells of a coverage between 0 and 1.
     pub mae_partial: f64,
-    /// ... of coverage 1.
+    /// The same over the cells of coverage 1.
     pub mae_solid: f64,
 }
 
@@ -64,8 +63,7 @@ impl Errors {
 }
 
 impl Accuracy {
-    /// The accuracy of a map: over the cells that count for its run, and over those that are the
-    /// same for all.
+    /// Evaluates the accuracy of a map over the scored cells of its run, and over the compared cells.
     pub fn new(truth: &Truth, mission: &Mission, map: &CoverageMap, scored: &[Cell]) -> Self {
         let compared = truth.compared_cells(mission.config.robot.radius);
         let score = truth.score(map, &compared);
@@ -82,7 +80,7 @@ impl Accuracy {
         }
     }
 
-    /// All numbers by their names.
+    /// Returns all numbers with their names.
     pub fn named(&self) -> [(&'static str, f64); 14] {
         [
             ("crps", self.scored.crps),
@@ -104,7 +102,7 @@ impl Accuracy {
 }
 
 impl Truth {
-    /// The share of the observable cells that are known with an entropy of at most ε.
+    /// Returns the share of the observable cells that are known with an entropy of at most ε.
     pub fn share_explored(&self, map: &CoverageMap, mission: &Mission) -> f64 {
         let threshold = mission.config.planner.entropy_threshold;
         self.share_observable(|cell| map.is_known(cell) && map.entropy(cell) <= threshold)

@@ -1,19 +1,18 @@
-//! The cells over which maps of a world are compared, whoever made them.
+//! The cells over which maps of a world are compared, whatever run made them.
 
 use crate::Truth;
 use covmap::{Cell, Class, Raster};
 use covmap_model::cells_under_body;
 
-/// A cell and its neighbours on one side: each pair of neighbours is met once.
+/// Offsets to a cell itself and to its neighbours on one side: each pair of neighbours occurs once.
 const FORWARD: [(i32, i32); 5] = [(0, 0), (1, 0), (0, 1), (1, 1), (-1, 1)];
 
 impl Truth {
-    /// The observable cells without those that a body of `radius` \[m\] may pin: free cells that
-    /// are under it somewhere between two neighbouring cells that it can truly reach. In
-    /// row-major order.
+    /// Returns the observable cells without those that a body of `radius` \[m\] may pin, in row-major order.
     ///
-    /// The set is a function of world, grid and body: unlike [`Truth::scored_cells`] it does not
-    /// depend on where a run led, so that maps of different runs can be compared over it.
+    /// The body may pin a free cell that is under it somewhere between two neighbouring cells that it can
+    /// truly reach. The set is a function of world, grid and body. Unlike [`Truth::scored_cells`] it does not
+    /// depend on the path of a run, so maps of different runs can be compared over it.
     pub fn compared_cells(&self, radius: f64) -> Vec<Cell> {
         let pinned = self.pinnable(radius);
         let is_out = |cell: Cell| pinned.get(cell) == Some(&true);
@@ -21,7 +20,7 @@ impl Truth {
         observable.filter(|cell| !(is_out(*cell) && self.is_free(*cell))).collect()
     }
 
-    /// The cells whose centres are under the body somewhere in the space that it can reach.
+    /// Marks the cells whose centres are under the body somewhere in the space that the body can reach.
     fn pinnable(&self, radius: f64) -> Raster<bool> {
         let grid = *self.reachable.grid();
         let reached = |cell: Cell| self.reachable.get(cell) == Some(&true);

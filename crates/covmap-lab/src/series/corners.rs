@@ -1,8 +1,8 @@
-//! A driven path by its corners.
+//! The corners of a driven path.
 
 use nalgebra::Point2;
 
-/// The corners of a path, without those between which it goes straight on.
+/// Returns the corners of a path, without the points where the path goes straight on.
 pub fn corners(path: &[Point2<f64>]) -> Vec<Point2<f64>> {
     let mut kept: Vec<Point2<f64>> = Vec::new();
     for point in path {

@@ -1,4 +1,4 @@
-//! A series of runs: where they start, what is measured of each, and its mean.
+//! A series of runs: their starts, and the measurements of each run.
 
 mod accuracy;
 mod compared;

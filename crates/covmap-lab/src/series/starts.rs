@@ -1,4 +1,4 @@
-//! Places to start from.
+//! The starts of a series.
 
 use covmap::{Cell, Grid};
 use covmap_statistics::{stream, uniform};
@@ -6,11 +6,12 @@ use covmap_world::World;
 use nalgebra::Isometry2;
 use std::f64::consts::TAU;
 
-/// Poses at `count` different cells of a grid, drawn by a seed, from which a robot of `radius`
-/// \[m\] can reach `home` and has `room` \[m\] around it; with headings that are drawn as well.
+/// Draws the poses of `count` starts by a seed, in different cells of a grid, with random headings.
+///
+/// From each of the cells a robot of `radius` \[m\] can reach `home`, and has `room` \[m\] around it.
 ///
 /// # Errors
-/// If there are not that many cells: how many there are.
+/// If there are fewer such cells; the error is their number.
 pub fn drawn_starts(
     world: &World,
     grid: &Grid,

@@ -1,4 +1,4 @@
-//! How often every cell was measured, and how often until it was explored.
+//! The tally of measurements: of each cell, and until the cell was explored.
 
 use crate::ConfigError;
 use covmap::{CoverageMap, Raster};
@@ -6,40 +6,40 @@ use covmap_explore::Mission;
 use covmap_model::{Counting, ScanCounts, SensorModel, intercepted};
 use covmap_sonar::Scan;
 
-/// The distance at which the extended counting counts a beam half \[m\].
+/// Distance at which a beam counts half in the extended counting \[m\].
 const HALF_DISTANCE: f64 = 2.0;
 
-/// Counts how often each cell is measured, whatever the strategy (section 5.1).
+/// The number of measurements of each cell, with any strategy (section 5.1).
 #[derive(Debug)]
 pub struct Tally {
     model: SensorModel,
     threshold: f64,
     plain: ScanCounts,
     discounted: ScanCounts,
-    /// Both counts when a cell first had an entropy of at most ε.
+    /// Both counts at the scan after which a cell first had an entropy of at most ε.
     first: Raster<Option<(f64, f64)>>,
 }
 
-/// What a tally came to.
+/// The results of a tally.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Measurements {
-    /// The largest number of measurements that any observable cell had when it first had an
-    /// entropy of at most ε: footnote 2 of the paper.
+    /// The largest number of measurements of an observable cell when it first had an entropy of at
+    /// most ε: footnote 2 of the paper.
     pub until_explored: f64,
     /// The same with the weights `1/(1 + d^l/2 m)`.
     pub until_explored_discounted: f64,
     /// The mean number of measurements of an observable cell.
     pub mean: f64,
-    /// Their standard deviation.
+    /// The standard deviation of this number.
     pub deviation: f64,
-    /// The smallest number.
+    /// The smallest number of measurements of an observable cell.
     pub least: f64,
-    /// The largest number.
+    /// The largest number of measurements of an observable cell.
     pub most: f64,
 }
 
 impl Tally {
-    /// Nothing was measured yet.
+    /// Returns a tally without a measurement.
     ///
     /// # Errors
     /// If the configuration is invalid.
@@ -55,7 +55,7 @@ impl Tally {
         })
     }
 
-    /// Adds a scan; `map` holds it already.
+    /// Adds a scan, which `map` already holds.
     pub fn add(&mut self, map: &CoverageMap, scan: &Scan) {
         let cells = intercepted(&self.model, map.grid(), scan);
         self.plain.add(&cells);
@@ -69,7 +69,7 @@ impl Tally {
         }
     }
 
-    /// What it came to over some cells.
+    /// Returns the results over the observable cells.
     pub fn finish(&self, observable: &Raster<bool>) -> Measurements {
         let cells = || observable.iter().filter(|(_, o)| **o).map(|(cell, _)| cell);
         let first = || cells().filter_map(|cell| self.first.get(cell).copied().flatten());
@@ -90,7 +90,7 @@ impl Tally {
 }
 
 impl Measurements {
-    /// All numbers by their names.
+    /// Returns all numbers with their names.
     pub fn named(&self) -> [(&'static str, f64); 6] {
         [
             ("measurements.until_explored", self.until_explored),

@@ -82,7 +82,7 @@ fn mission(cells: usize, directions: &[f64], range: f64, limits: Limits) -> Miss
     }
 }
 
-/// A map of these posteriors; unknown where there is none.
+/// A map of these posteriors; cells without one are unknown.
 fn map_of(posteriors: &[Option<Vec<f64>>]) -> CoverageMap {
     let grid = Grid::new(Point2::origin(), 1.0, posteriors.len(), 1).unwrap();
     let bins = posteriors.iter().flatten().map(Vec::len).next().unwrap();

@@ -9,8 +9,8 @@ use nalgebra::{Isometry2, Point2};
 use std::convert::Infallible;
 use std::ops::ControlFlow;
 
-/// Its sensors always read the same, and it bumps into a wall at `wall` [m] with its front, .3 m
-/// ahead.
+/// A robot whose sensors always read the same, and that bumps into a wall at `wall` [m] with its front,
+/// .3 m ahead.
 struct Told {
     readings: [Range; 2],
     wall: f64,
@@ -30,20 +30,20 @@ impl Robot for Told {
     }
 }
 
-/// What goes otherwise than expected, once.
+/// An unexpected event that happens once.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Mishap {
     /// The battery is empty at the third scan.
     Fails,
-    /// Somebody stops the robot half way on its second drive.
+    /// The robot is stopped half way on its second drive.
     IsStopped,
-    /// At its second scan it finds itself a cell farther to the right.
+    /// At its second scan the robot is a cell farther to the right.
     Drifts,
-    /// ... or far away.
+    /// At its second scan the robot is far away.
     IsLost,
 }
 
-/// A robot to which that happens.
+/// A robot with a mishap.
 struct Unlucky {
     told: Told,
     mishap: Mishap,
@@ -81,7 +81,7 @@ impl Robot for Unlucky {
     }
 }
 
-/// Six cells, a wall behind the last one, and twelve scans at most.
+/// A run along six cells, with a wall behind the last one and at most twelve scans.
 fn run_unlucky(mishap: Mishap) -> Run {
     let told = Told { readings: SILENT, wall: 6.0 };
     let mut robot = Unlucky { told, mishap, scans: 0, drives: 0 };
@@ -105,7 +105,7 @@ fn a_robot_that_is_stopped_or_drifts_goes_on_from_where_it_is() {
     for mishap in [Mishap::IsStopped, Mishap::Drifts] {
         let run = run_unlucky(mishap);
         assert!(run.failure.is_none(), "{mishap:?}: {:?}", run.ending);
-        // It went on, to the end of the corridor.
+        // The robot went on to the end of the corridor.
         let places = places(&run);
         assert!(places.iter().any(|x| *x < 2.0) && places.iter().any(|x| *x > 4.0), "{places:?}");
         // The path has no gap: it ends where the last scan was taken.
@@ -118,7 +118,7 @@ fn a_robot_that_is_stopped_or_drifts_goes_on_from_where_it_is() {
     );
 }
 
-/// Nothing answers.
+/// Readings without an echo.
 const SILENT: [Range; 2] = [Range::NoEcho; 2];
 
 /// A run along six cells from the middle of the second, with rays of 1 m to both sides.
@@ -139,7 +139,7 @@ fn run_told(mission: &Mission, mut robot: Told) -> (Run, Vec<Event>) {
     (run.unwrap(), events)
 }
 
-/// Where the scans were taken [m].
+/// The places of the scans [m].
 fn places(run: &Run) -> Vec<f64> {
     run.scans.iter().map(|scan| scan.pose.translation.x).collect()
 }
@@ -150,7 +150,7 @@ fn budget(scans: usize, while_driving: Option<f64>) -> Limits {
 
 #[test]
 fn after_a_bump_the_robot_goes_back_to_where_it_came_from() {
-    // It gets from 2.5 m as far as 3 m on its way to 3.5 m.
+    // The robot gets from 2.5 m as far as 3 m on its way to 3.5 m.
     let (run, events) = run(3.3, Limits::default());
     let bump = events.iter().position(|e| matches!(e, Event::Bump { .. })).unwrap();
     let Event::Bump { cell, at, towards } = &events[bump] else { panic!() };
@@ -160,16 +160,16 @@ fn after_a_bump_the_robot_goes_back_to_where_it_came_from() {
     let xs: Vec<f64> = run.trajectory.iter().map(|p| p.x).collect();
     let turn = xs.iter().position(|x| (x - 3.0).abs() < 1e-12).unwrap();
     all_close(&xs[turn - 1..turn + 2], &[2.5, 3.0, 2.5], 1e-12);
-    // The way there and back is driven.
+    // The path includes the way there and back.
     let length: f64 = xs.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
     close(run.path_length, length, 1e-12);
-    // In a corridor all turns are half ones.
+    // In a corridor all turns are half turns.
     let ways: Vec<f64> =
         xs.windows(2).map(|pair| pair[1] - pair[0]).filter(|way| *way != 0.0).collect();
     let turned = ways.windows(2).filter(|pair| pair[0] * pair[1] < 0.0).count();
     close(run.turns(), std::f64::consts::PI * f64::from(u32::try_from(turned).unwrap()), 1e-9);
     assert!(xs.iter().all(|x| *x <= 3.0 + 1e-12));
-    // The next decision is made from the cell that it came from, and no one enters that cell.
+    // The next decision is made from the cell that the robot came from; no path enters the other cell.
     let next = events[bump..].iter().find_map(|e| match e {
         Event::Decision { from, .. } => Some(*from),
         _ => None,
@@ -219,7 +219,7 @@ fn every_decision_is_made_where_the_last_one_led() {
 
 #[test]
 fn the_robot_measures_every_so_many_metres_on_its_way() {
-    // View-points are 2 m apart, beyond another cell; on the way it measures every .3 m.
+    // View-points are 2 m apart, beyond another cell; on the way the robot measures every .3 m.
     let mut mission = mission(9, &[0.0, 180.0], 3.0, budget(9, Some(0.3)));
     mission.config.planner.scan_spacing = 2.0;
     let (run, events) = run_of(&mission, f64::INFINITY);
@@ -243,8 +243,8 @@ fn to_stay_in_a_cell_is_to_go_to_its_centre() {
 
 #[test]
 fn where_the_robot_stood_in_a_run_it_can_stand_again() {
-    // From cell 0, where it starts, it drives over cell 1 to cell 2. When it has measured there,
-    // the cells 1 and 3 turn out to look like walls.
+    // From its start in cell 0 the robot drives over cell 1 to cell 2. After the scan there, the cells 1
+    // and 3 look like walls.
     let mut mission = mission(6, &[0.0, 180.0], 1.0, budget(30, None));
     mission.start = Isometry2::new([0.5, 0.5].into(), 0.0);
     mission.config.planner.body_evidence = BodyEvidence::PlannerOnly;
@@ -272,7 +272,7 @@ fn where_the_robot_stood_in_a_run_it_can_stand_again() {
 #[test]
 fn where_the_robot_stood_is_free_and_what_it_sees_is_measured() {
     let (run, _) = run(f64::INFINITY, budget(1, None));
-    // The cells beside it got one reading without an echo; a cell of 1 m is wider than its body.
+    // The cells beside the robot got one reading without an echo; a cell of 1 m is wider than its body.
     let known: Vec<i32> =
         run.map.grid().cells().filter(|c| run.map.is_known(*c)).map(|c| c.x).collect();
     assert_eq!(known, [0, 2]);
@@ -295,8 +295,8 @@ fn cells_under_the_body_are_free_for_good() {
 
 #[test]
 fn candidates_that_lose_by_measuring_are_counted() {
-    // The echoes end early in the cells beside the robot, which look covered. It expects the next
-    // ones in their middle, where they would say that one half is covered.
+    // The echoes end early in the cells beside the robot, which look covered. The model expects the next
+    // echoes in the middle of these cells, where they would say that one half is covered.
     let mut mission = mission(6, &[0.0, 180.0], 1.0, budget(6, None));
     (mission.config.planner.strategy, mission.config.planner.entropy_threshold) =
         (Strategy::Ig, 0.2);

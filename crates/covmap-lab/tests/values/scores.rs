@@ -25,7 +25,7 @@ fn map() -> CoverageMap {
     ])
 }
 
-/// The first three cells can be reached, the others are the first solid ones.
+/// The first three cells can be reached, the others are the first solid cells.
 fn truth(map: &CoverageMap) -> Truth {
     let grid = *map.grid();
     let coverage = vec![0.0, 0.0, 0.2, 1.0, 1.0];
@@ -48,7 +48,7 @@ fn a_map_is_scored_against_the_truth() {
     close(score.completeness, 1.0 / 3.0, 1e-12);
     close(score.phantom, 1.0 / 3.0, 1e-12);
     close(score.wall_recall, 0.5, 1e-12);
-    // The rough one is found, the smooth one is not.
+    // The rough wall is found, the smooth one is not.
     assert_eq!((score.wall_recall_rough, score.wall_recall_smooth), (Some(1.0), Some(0.0)));
     // (0 + 1 + .3 + .5 + 1)/5 and (.075 + .8 + .3 + .5 + .7)/5
     close(score.mae_mode, 0.56, 1e-12);
@@ -57,7 +57,7 @@ fn a_map_is_scored_against_the_truth() {
     close(score.mean_log_likelihood, -1.344_480_0, 1e-6);
     // Entropies of .394, .802, 1.099, .950 and .950.
     close(score.share_entropy_above_0_65, 0.8, 1e-12);
-    // Over a cell that is right.
+    // Over a cell with the right mode.
     close(truth(&map).score(&map, &cells[..1]).mae_mode, 0.0, 0.0);
 }
 
@@ -129,7 +129,7 @@ fn the_scored_cells_are_what_a_run_could_see_and_one_solid_layer_but_not_what_it
     let pinned = mission.grid.cells().filter(|cell| run.map.is_pinned(*cell)).count();
     let coverage = |cell: &Cell| *truth.coverage.get(*cell).unwrap();
     let count = |solid: f64| scored.iter().filter(|cell| coverage(cell) == solid).count();
-    // 18 × 14 cells are free, and round them are 2 · (18 + 14) solid ones, that can be seen.
+    // 18 × 14 cells are free, and 2 · (18 + 14) solid cells around them can be seen.
     assert!(pinned > 0 && scored.iter().all(|cell| !run.map.is_pinned(*cell)));
     assert_eq!((count(0.0), count(1.0)), (18 * 14 - pinned, 2 * (18 + 14)));
 }

@@ -1,4 +1,4 @@
-//! Strategies in files: one spelling, and those of earlier versions.
+//! Strategies in files: the present spelling, and those of earlier versions.
 
 use covmap_plan::Strategy;
 

@@ -1,4 +1,4 @@
-//! How often every cell was measured, and what a mission knows.
+//! The tally of measurements, and the setup of a mission.
 
 use super::{close, map_of, mission};
 use covmap::Raster;

@@ -1,30 +1,31 @@
-//! What happened to a body, to be integrated again.
+//! Events of a body, which can be integrated again.
 
 use super::Body;
 use covmap::{Change, CoverageMap};
 use nalgebra::{Point2, Vector2};
 
-/// What happened to the body of a robot: with it a map can be built again from a record.
+/// An event of the robot's body; a record of events allows a map to be rebuilt.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum BodyEvent {
-    /// It was all the way between two points \[m\] and touched nothing.
+    /// The body moved between two points \[m\] and touched nothing.
     Moved {
-        /// Where the way began.
+        /// Start of the way.
         from: Point2<f64>,
-        /// Where it ended.
+        /// End of the way.
         to: Point2<f64>,
     },
-    /// With its centre at a point \[m\] it touched something when it drove on in a direction.
+    /// The body, with its centre at a point \[m\], touched something when it drove on in a
+    /// direction.
     Touched {
-        /// Where the centre was.
+        /// Centre of the body.
         at: Point2<f64>,
-        /// Where it drove.
+        /// Direction of the drive.
         direction: Vector2<f64>,
     },
 }
 
 impl Body {
-    /// Integrates what happened: [`Body::moved`] or [`Body::touched`]. Returns what changed, in
+    /// Integrates an event by [`Body::moved`] or [`Body::touched`]. Returns the changes, in
     /// row-major order.
     pub fn happened(&mut self, map: &mut CoverageMap, event: &BodyEvent) -> Vec<Change> {
         match *event {

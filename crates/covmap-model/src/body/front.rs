@@ -5,8 +5,8 @@ use nalgebra::{Point2, Vector2};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The squares of side `step` \[m\], from a corner on, under the front of a disc that drives in a
-/// direction, in row-major order, with their shares of its width: all of them together 1.
+/// Returns the squares of side `step` \[m\], from a corner on, under the front of a disc that
+/// drives in a direction, in row-major order, with their shares of its width. The shares sum to 1.
 pub(super) fn front(
     corner: Point2<f64>,
     step: f64,
@@ -49,7 +49,7 @@ pub(super) fn front(
     shares.into_iter().collect()
 }
 
-/// An angle in [−π, π).
+/// Wraps an angle to [−π, π).
 fn around(angle: f64) -> f64 {
     angle - TAU * ((angle + PI) / TAU).floor()
 }

@@ -1,4 +1,4 @@
-//! What contacts say, in small maps.
+//! Contacts in small maps.
 
 use super::*;
 
@@ -7,7 +7,7 @@ fn map(width: usize, height: usize) -> CoverageMap {
     CoverageMap::new(grid, 11).unwrap()
 }
 
-/// Makes a cell free, or solid, as sure as `weight` against 1.
+/// Makes a cell free or solid with the odds `weight` against 1.
 fn believe(map: &mut CoverageMap, cell: Cell, coverage: usize, weight: f64) {
     let mut evidence = [1.0; 11];
     evidence[coverage] = weight;
@@ -82,14 +82,14 @@ fn a_contact_stays_true_when_readings_speak_against_it() {
         let changes = cells.iter().filter_map(|cell| map.multiply(*cell, &free)).collect();
         body.hold(&mut map, changes);
     }
-    // Both look free, and one of them is not: half each, but that both may be, whatever the
-    // readings say.
+    // Both look free, and one of them is not: half of the probability each, but both may be
+    // covered, whatever the readings say.
     for cell in cells {
         let p = 1.0 - map.histogram(cell).probabilities()[0];
         assert!((0.5..0.6).contains(&p), "{p}");
         assert!(map.entropy(cell) > 0.6);
     }
-    // The body gets to one of them: then it was the other.
+    // The body reaches one of them: then the other one was touched.
     let changes = map.pin_free(cells[0]).into_iter().collect();
     let changes = body.hold(&mut map, changes);
     assert_eq!(changes.iter().map(|c| c.cell).collect::<Vec<_>>(), cells);
@@ -98,8 +98,8 @@ fn a_contact_stays_true_when_readings_speak_against_it() {
     assert!((p - 0.018).abs() < 0.003, "{p}");
 }
 
-/// A wall at some x, of which all readings say a hundred times what they say; bumped into in
-/// each row from 4 to 15.
+/// Returns the map of a wall at some x: the readings say `says` of all cells, 50 times before and
+/// once after each contact. The body touches the wall in each row from 4 to 15.
 fn bumped_wall(wall: f64, says: impl Fn(Cell) -> [f64; 11]) -> CoverageMap {
     let mut map = map(20, 20);
     let mut body = Body::new(*map.grid(), 0.27);
@@ -128,12 +128,12 @@ fn a_wall_that_mirrors_every_sound_is_not_free_where_it_was_touched() {
     for step in 0..20 {
         let wall = 1.0 + 0.005 * f64::from(step);
         let map = bumped_wall(wall, |_| FREE);
-        // But at its ends, where another cell beside may have been it as well.
+        // Except at its ends, where another cell beside may have been touched as well.
         for y in 6..14 {
             let (at, behind) = (Cell::new(10, y), Cell::new(11, y));
             let p = 1.0 - map.histogram(at).probabilities()[0];
             assert!(map.entropy(at) > 0.6 && p > 0.2, "{wall} {y}: {:?}", map.histogram(at));
-            // What is touched may be as deep as a part of a cell.
+            // The touched object may be as deep as a part of a cell.
             if wall < 1.09 {
                 assert!(map.mode(behind) < 0.1 && map.entropy(behind) < 0.6, "{wall} {y}");
             }

@@ -1,15 +1,15 @@
-//! Where the rows of a grid cross a sector: which columns of each may be covered.
+//! The rows of a grid across a sector, and the columns of each that it may cover.
 
 use super::Sector;
 use covmap::{Cell, Grid};
 use nalgebra::{Point2, Vector2};
 
-/// Where the rows of a grid cross a sector.
+/// The rows of a grid across a sector.
 pub(super) struct Rows<'a> {
     sector: &'a Sector,
-    /// Of the lines that bound the sector: a point, dx/dy, and whether they lead upwards.
+    /// The lines that bound the sector: a point, dx/dy, and whether the line leads upwards.
     lines: [(Point2<f64>, f64, bool); 3],
-    /// How many of them: the axis matters only where it adds cells.
+    /// Number of these lines in use: the axis matters only where it adds cells.
     count: usize,
     /// The sector's box.
     low: f64,
@@ -23,13 +23,13 @@ impl<'a> Rows<'a> {
         let line = |(from, to): (Point2<f64>, Vector2<f64>)| (from, to.x / to.y, to.y >= 0.0);
         let (apex, sensor) = (sector.apex, sector.sensor);
         let lines = [(apex, sector.first), (apex, sector.last), (sensor, sector.axis)].map(line);
-        // A cell's centre decides, or all of the cell; and the border has some width.
+        // Either a cell's centre decides, or all of the cell; and the border has some width.
         let half = if sector.with_axis { 1.5 } else { 0.01 } * grid.resolution();
         let count = if sector.with_axis { 3 } else { 2 };
         Self { sector, lines, count, low, high, half }
     }
 
-    /// The first and the last column that the sector may cover in row `y`: those of its
+    /// Returns the first and the last column that the sector may cover in row `y`: those of its
     /// borders and axis within the row.
     #[inline(always)]
     pub(super) fn columns(&self, grid: &Grid, y: i32) -> Option<(i32, i32)> {

@@ -5,9 +5,9 @@ use crate::{CauseParameters, Causes, Outcome, SensorModel};
 use covmap::{CoverageMap, Grid};
 use covmap_sonar::Scan;
 
-/// For every beam what its reading means, and who caused it by the map as it is: all beams of a
-/// scan are explained by the map before the scan, so that their order does not matter. `None` for
-/// a reading that says nothing. `novelty` is how much of each reading is new.
+/// Returns the meaning of every beam's reading and its causes by the map as it is, or `None` for a
+/// reading that says nothing. The map before the scan explains all beams, so that their order does
+/// not matter. `novelty` has a number for each reading.
 pub(crate) fn explain(
     model: &SensorModel,
     parameters: &CauseParameters,

@@ -35,7 +35,7 @@ impl CauseTerms {
         self.passed.push(single(shares.passed));
     }
 
-    /// Adds cells of which nothing is said, until there are `count` in all.
+    /// Adds cells without evidence, until there are `count` in all.
     pub(crate) fn fill(&mut self, count: usize) {
         for (terms, value) in [
             (&mut self.ended, 0.0),
@@ -47,8 +47,8 @@ impl CauseTerms {
         }
     }
 
-    /// [`crate::Causes::evidence`] of a block. Each weight is within 1e-6 of the literal one, in units of
-    /// the largest.
+    /// Evaluates [`crate::Causes::evidence`] of a block. Each weight is within 1e-6 of the literal
+    /// one, in units of the largest.
     #[inline(always)]
     pub(crate) fn evidence(&self, block: usize, out: &mut [[Lanes; TOGETHER]]) {
         let block = |terms: &[f32]| terms.as_chunks::<LANES>().0[block];
@@ -84,7 +84,7 @@ impl CauseTerms {
     }
 }
 
-/// exp(−½((x − μ)/σ)²) at some bins.
+/// Returns exp(−½((x − μ)/σ)²) at some bins.
 #[inline(always)]
 fn gauss(first: usize, bins: usize, mus: &Lanes, narrow: &Lanes) -> [Lanes; TOGETHER] {
     let mut z = [[0.0; LANES]; TOGETHER];

@@ -5,7 +5,7 @@ use crate::product::Reading;
 use covmap::bin_coverage;
 use covmap::lanes::{LANES, Lanes, TOGETHER, exp, flat, ln, map, rows};
 
-/// Densities are kept above this part of the largest one: a posterior's floor is far above.
+/// Least density, in units of the largest one: a posterior's floor is far above.
 const LEAST: f32 = 1e-30;
 
 /// μ, σ and γ of many cells, in blocks of [`LANES`].
@@ -17,7 +17,7 @@ pub(crate) struct Terms {
 }
 
 impl Terms {
-    /// Adds cells for which a model means the same by a reading, by their distances \[m\].
+    /// Adds cells to which the same reading applies, by their distances \[m\].
     #[inline(always)]
     pub(crate) fn extend(
         &mut self,
@@ -36,16 +36,16 @@ impl Terms {
         }
     }
 
-    /// Adds cells of which it does not matter what is said, until there are `count` in all.
+    /// Adds cells with arbitrary evidence, until there are `count` in all.
     pub(crate) fn fill(&mut self, count: usize) {
         [&mut self.mu, &mut self.sigma, &mut self.gamma]
             .into_iter()
             .for_each(|terms| terms.resize(count, 1.0));
     }
 
-    /// [`crate::SensorModel::evidence`] of a block, not normalised: the largest weight of a cell lies
-    /// between ½ and 2. Each weight is within 1e-5 of the literal one, in units of itself,
-    /// where that is more than 1e-12 of the largest.
+    /// Evaluates [`crate::SensorModel::evidence`] of a block, not normalised: the largest weight of
+    /// a cell lies between ½ and 2. Each weight is within 1e-5 of the literal one, in units of
+    /// itself, where that is more than 1e-12 of the largest.
     #[inline(always)]
     pub(crate) fn evidence(
         &self,

@@ -9,11 +9,11 @@ use covmap::{Cell, Change, CoverageMap, EvidenceBlock, Grid};
 use covmap_sonar::{Range, Scan};
 use pulp::{Simd, WithSimd};
 
-/// Integrates a scan into a map, Eq. (8): the posterior of every covered cell is multiplied
-/// by p(c_l | d) of Eq. (9). Returns what changed, in row-major order, each cell once.
+/// Integrates a scan into a map, Eq. (8): the posterior of every covered cell is multiplied by
+/// p(c_l | d) of Eq. (9). Returns the changes, in row-major order, each cell once.
 ///
-/// Computed in f32, the same on every processor: posteriors differ from those of
-/// [`crate::integrate_literally`] by less than 1e-5 for a scan.
+/// The results are computed in f32 and are the same on every processor. Posteriors differ from
+/// those of [`crate::integrate_literally`] by less than 1e-5 for a scan.
 ///
 /// # Panics
 /// If the model does not fit the map ([`SensorModel::fits`]), or the scan not the ring.
@@ -21,8 +21,8 @@ pub fn integrate(model: &SensorModel, map: &mut CoverageMap, scan: &Scan) -> Vec
     integrate_new(model, map, scan, &vec![1.0; scan.ranges.len()])
 }
 
-/// The same of a scan of which so much of each beam's reading is new, in \[0, 1\]:
-/// [`crate::Looks`]. With the product of Eq. (9) all of it is.
+/// Integrates a scan with the novelty of each beam's reading, in \[0, 1\] ([`crate::Looks`]). The
+/// product of Eq. (9) ignores it and takes all of each reading as new.
 ///
 /// # Panics
 /// As [`integrate`], or if there is not one number for each reading.
@@ -55,14 +55,14 @@ struct Integration<'a> {
     novelty: &'a [f64],
     grid: Grid,
     touched: Touched,
-    /// The cells of all beams by their row-major index, in blocks of [`LANES`], and no cell
-    /// twice in a block; where they are in `touched`; and how their beams meet them.
+    /// The cells of all beams: their row-major index, their place in `touched`, and how their beams
+    /// meet them. They are in blocks of [`LANES`], no cell twice in a block.
     cells: Vec<u32>,
     places: Vec<u32>,
     met: Vec<Met>,
 }
 
-/// What a scan says of its cells, by one of the updates.
+/// Evidence of a scan about its cells, by one of the updates.
 enum Said {
     Product(Terms),
     Cause(CauseTerms),
@@ -96,7 +96,7 @@ impl<'a> Integration<'a> {
         Self { model, map, scan, novelty, grid, touched, cells, places, met }
     }
 
-    /// All cells that the scan changes, and what it says of each.
+    /// Collects all cells that the scan changes, and the evidence about each.
     #[inline(always)]
     fn collect(&mut self) -> Said {
         let (model, resolution) = (self.model, self.model.resolution());
@@ -155,8 +155,8 @@ impl<'a> Integration<'a> {
         });
     }
 
-    /// Adds a cell to the present block, or to the next one if it is in this one already, from
-    /// another beam. Returns whether it did: not one that nothing can change.
+    /// Adds a cell to the present block, or to the next one if another beam has put it into this
+    /// one. Returns whether the cell was added: a cell that nothing can change is not.
     #[inline(always)]
     fn add(&mut self, cell: Cell, met: Met) -> bool {
         let index = self.grid.index(cell).filter(|index| self.map.is_changeable(*index));
@@ -204,7 +204,7 @@ impl<'a> Integration<'a> {
     }
 }
 
-/// What happened to the cells around the robot.
+/// Changes of the cells around the robot.
 struct Touched {
     low: Cell,
     width: usize,
@@ -247,7 +247,7 @@ impl Touched {
         }
     }
 
-    /// One change for each cell, in row-major order.
+    /// Returns one change for each cell, in row-major order.
     fn changes(&self) -> Vec<Change> {
         let mut changes = Vec::with_capacity(self.entropies.len());
         for (y, row) in (self.low.y..).zip(self.slots.chunks(self.width.max(1))) {
@@ -377,7 +377,7 @@ mod tests {
         }
     }
 
-    /// Those that this processor has.
+    /// Returns the kinds that this processor has.
     fn kinds_of_registers() -> Vec<pulp::Arch> {
         let mut kinds = vec![pulp::Arch::new()];
         #[cfg(target_arch = "x86_64")]

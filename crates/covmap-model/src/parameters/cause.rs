@@ -3,39 +3,39 @@
 use super::{Linear, ModelError};
 use serde::{Deserialize, Serialize};
 
-/// What it says of a cell that sound passed through it.
+/// Evidence about a cell that sound has passed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct FreeSpace {
     /// f_0: the share of "free" at the sensor and on the beam's axis, at most 1.
     pub share: f64,
-    /// d_f: where 1/e of it is left, on the axis \[m\]. Far away the cone is wide.
+    /// d_f: distance on the axis at which 1/e of it is left \[m\]. Far away the cone is wide.
     pub range: f64,
-    /// How fast it falls with the bearing: the standard deviation, in half-widths of the beam.
+    /// Standard deviation of its decrease with the bearing, in half-widths of the beam.
     pub width: f64,
     /// σ of "free".
     pub sigma: f64,
 }
 
-/// What a beam without an echo says.
+/// Evidence of a beam without an echo.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NoEchoShare {
-    /// Cells up to this distance were passed \[m\]; 0 ignores such beams.
+    /// Distance up to which such a beam passed the cells \[m\]; 0 ignores such beams.
     pub range: f64,
-    /// How surely: a smooth wall does not answer either.
+    /// Certainty that it passed them: a smooth wall does not answer either.
     pub share: f64,
 }
 
-/// How much readings from one place repeat each other; [`Looks`](crate::Looks) has the equations.
+/// Repetition among readings from one place; [`Looks`](crate::Looks) has the equations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Repeats {
     /// ρ_0: the probability that a second reading from the same place repeats the first.
     pub share: f64,
-    /// λ: how far one must move \[m\] until ρ has fallen to .61 of that.
+    /// λ: distance over which ρ falls to .61 of that \[m\].
     pub distance: f64,
-    /// ψ: the same for the angle between two axes \[rad\].
+    /// ψ: angle between two axes over which ρ falls as much \[rad\].
     pub bearing: f64,
 }
 
@@ -43,44 +43,44 @@ pub struct Repeats {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CauseParameters {
-    /// M: into how many bearings a beam is divided.
+    /// M: number of bearings into which a beam is divided.
     pub bearings: usize,
-    /// τ: how far from a cell's border an echo may come from it \[m\].
+    /// τ: largest distance from a cell's border of an echo that may come from the cell \[m\].
     pub range_tolerance: f64,
-    /// ℓ/r: how deep a cell is along a beam, in sides of a cell: 1 along the axes of the grid,
-    /// 4/π on average over all directions.
+    /// ℓ/r: depth of a cell along a beam, in sides of a cell: 1 along the axes of the grid, 4/π on
+    /// average over all directions.
     pub cell_depth: f64,
     /// Expected coverage of a cell that no reading has touched.
     pub unknown_coverage: f64,
-    /// p: exponent on the expected coverage of what may have answered.
+    /// p: exponent on the expected coverage of a surface that may have answered.
     pub sharpness: f64,
-    /// a_0: how much chance competes with the surfaces; one that is certain counts 1.
+    /// a_0: weight of chance against the surfaces; a certain surface has weight 1.
     pub chance: f64,
-    /// κ: exponent on the view that was clear; the nearest surface answers first.
+    /// κ: exponent on the clear part of the view; the nearest surface answers first.
     pub first_echo: f64,
-    /// σ_in(d^l, d): how far the coverage of a cell in which the echo began may be from μ.
+    /// σ_in(d^l, d): standard deviation from μ of the coverage of a cell in which the echo began.
     pub sigma_in: Linear,
-    /// How far behind the end of a measurement cells are taken to be covered \[m\].
+    /// Distance behind the end of a measurement up to which cells are taken to be covered \[m\].
     pub behind: f64,
     /// b: share of the cause that counts for these cells, at most 1.
     pub behind_weight: f64,
     /// σ of "covered" behind the end.
     pub sigma_behind: f64,
-    /// What it says of a cell that sound passed through it.
+    /// Evidence about a cell that sound has passed.
     pub free: FreeSpace,
-    /// How surely an echo from beyond the usable range passed the cells before it.
+    /// Certainty that an echo from beyond the usable range passed the cells before it.
     pub beyond: f64,
-    /// What a beam without an echo says.
+    /// Evidence of a beam without an echo.
     pub no_echo: NoEchoShare,
-    /// How much readings from one place repeat each other.
+    /// Repetition among readings from one place.
     pub repeats: Repeats,
 }
 
-/// The most bearings.
+/// The largest number of bearings.
 pub(crate) const MOST_BEARINGS: usize = 16;
 
 impl CauseParameters {
-    /// What a fit to whole explorations of simulated worlds came to.
+    /// Returns the result of a fit to whole explorations of simulated worlds.
     pub fn fitted() -> Self {
         Self {
             bearings: 8,

@@ -3,18 +3,18 @@
 use super::{Linear, ModelError};
 use serde::{Deserialize, Serialize};
 
-/// What a beam without an echo says.
+/// Evidence of a beam without an echo.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct NoEchoParameters {
-    /// Cells up to this distance are taken to be free \[m\]; 0 ignores such beams.
+    /// Distance up to which cells are taken to be free \[m\]; 0 ignores such beams.
     pub range: f64,
     /// The uniform share γ for these cells: larger than for an echo, because a smooth wall
     /// does not answer either.
     pub gamma: f64,
 }
 
-/// The parameters of Eq. (9), and of what the paper leaves open around it.
+/// Parameters of Eq. (9), and of the details that the paper leaves open.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct ProductParameters {
@@ -24,18 +24,18 @@ pub struct ProductParameters {
     pub sigma_in: f64,
     /// γ(d^l, d) of Eq. (9), a density level.
     pub gamma: Linear,
-    /// How far behind the end of a measurement cells are taken to be covered \[m\]:
+    /// Distance behind the end of a measurement up to which cells are taken to be covered \[m\]:
     /// the paper's 20 cm.
     pub behind: f64,
-    /// What a beam without an echo says.
+    /// Evidence of a beam without an echo.
     pub no_echo: NoEchoParameters,
-    /// Exponent ≤ 1 on the evidence of one measurement: 1 is the paper. Readings that are
-    /// not independent, as many from one pose, make the product of Eq. (8) overconfident.
+    /// Exponent ≤ 1 on the evidence of one measurement: 1 in the paper. Readings that are not
+    /// independent, such as many from one pose, make the product of Eq. (8) overconfident.
     pub tempering: f64,
 }
 
 impl ProductParameters {
-    /// What a fit to the first 200 scans of explorations came to.
+    /// Returns the result of a fit to the first 200 scans of explorations.
     pub fn fitted() -> Self {
         Self {
             sigma_out: Linear { base: 0.0523, per_cell_distance: 0.0, per_range: 0.0119 },
@@ -47,7 +47,7 @@ impl ProductParameters {
         }
     }
 
-    /// Parameters that were chosen by hand.
+    /// Returns parameters that were chosen by hand.
     pub(super) fn by_hand() -> Self {
         Self {
             sigma_out: Linear { base: 0.06, per_cell_distance: 0.02, per_range: 0.02 },

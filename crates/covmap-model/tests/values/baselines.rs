@@ -1,4 +1,4 @@
-//! Counting, occupancy, and where the body was.
+//! Counting, occupancy, and the body.
 
 use super::{all_close, at, close, grid, model, parameters, scan};
 use covmap::{Cell, CoverageMap, Raster};
@@ -155,7 +155,7 @@ fn a_contact_says_that_one_of_the_cells_ahead_is_covered() {
     let [low, high] = touched([0.8, 0.1, 0.1], [0.2, 0.2, 0.6]);
     all_close(&low, &[0.658_823_5, 0.141_176_5, 0.2], 1e-6);
     all_close(&high, &[0.035_294_1, 0.152_941_2, 0.811_764_7], 1e-6);
-    // What both say is free leaves .1/3 to each coverage at least, of [1 ε ε] that is
+    // Where both are free, .1/3 is left to each coverage at least: [1 ε ε] becomes
     // [1 .0333 .0333]/1.0667 with the mean .046875; then × [.046875 .546875 1.046875].
     let [low, high] = touched([1.0, 1e-6, 1e-6], [1.0, 1e-6, 1e-6]);
     all_close(&low, &high, 1e-6);

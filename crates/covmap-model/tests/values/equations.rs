@@ -91,10 +91,10 @@ fn readings_mean_what_they_say_up_to_the_usable_range() {
     close(model.max_reach(), 7.5, 1e-12);
 }
 
-/// What a ray of 4 m, and then one of 3 m, say of the cells 1, 2, … m ahead.
+/// Evidence of a ray of 4 m, and then of one of 3 m, about the cells 1, 2, … m ahead.
 ///
-/// By Eq. (9) with δ = d^l − d: passed, where δ < −½; ended in, at δ = 0, with μ = ½; behind, up
-/// to δ = 2; and past that nothing. By Eq. (8) the second is the product of both.
+/// By Eq. (9) with δ = d^l − d: passed, where δ < −½; ended in, at δ = 0, with μ = ½; behind, up to
+/// δ = 2; and nothing beyond. By Eq. (8) the second is the product of both.
 const AFTER_ONE: [[f64; 3]; 6] = [
     [0.577_937_0, 0.303_341_2, 0.118_721_8],
     [0.554_238_0, 0.310_402_0, 0.135_360_0],

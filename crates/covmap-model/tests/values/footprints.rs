@@ -1,4 +1,4 @@
-//! Which cells belong to which beam.
+//! The cells that belong to each beam.
 
 use super::{at, beam, close, grid};
 use covmap_model::{Footprint, FootprintCell, FootprintRule};

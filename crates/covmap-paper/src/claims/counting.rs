@@ -9,7 +9,7 @@ use covmap_plan::Strategy;
 const UNCERTAIN: &str = "share_uncertain";
 const EXPLORED: &str = "share_explored";
 
-/// Extended counting with n*, in the corridor: the other count with a discount.
+/// Returns extended counting with n*, in the corridor: the other count with a discount.
 pub(crate) fn with_n_star(runs: &Runs) -> Option<Strategy> {
     let is = |s: &Strategy| {
         matches!(s, Strategy::Count { half_distance: Some(_), .. }) && *s != EXTENDED
@@ -17,7 +17,7 @@ pub(crate) fn with_n_star(runs: &Runs) -> Option<Strategy> {
     runs.strategies().into_iter().find(is)
 }
 
-/// Table 1: the share of uncertain cells.
+/// Tests claim 5 (Table 1): the share of uncertain cells.
 pub fn claim_5(runs: &Runs) -> Finding {
     let units = runs.paired(&[Strategy::Cl, ONCE, EXTENDED], UNCERTAIN);
     Finding::new(
@@ -34,7 +34,7 @@ pub fn claim_5(runs: &Runs) -> Finding {
     .figure("extended counting, n = 50", units.mean(2))
 }
 
-/// Table 1: how much longer the paths are.
+/// Tests claim 6 (Table 1): the ratios of the paths.
 pub fn claim_6(runs: &Runs) -> Finding {
     let units = runs.paired(&[Strategy::Cl, ONCE, EXTENDED], PATH);
     let finding = Finding::new(
@@ -50,7 +50,7 @@ pub fn claim_6(runs: &Runs) -> Finding {
     n_star.into_iter().fold(finding, |f, (s, ratio)| f.figure(&format!("{s}, n*"), ratio))
 }
 
-/// Section 5.1: some cells are measured too often, others not often enough.
+/// Tests claim 7 (section 5.1): some cells are measured too often, others not often enough.
 pub fn claim_7(runs: &Runs) -> Finding {
     let metric = |name: &str| runs.paired(&[EXTENDED], name);
     let spread = runs.paired_by(&[EXTENDED], |run| {
@@ -79,7 +79,7 @@ pub fn claim_7(runs: &Runs) -> Finding {
     .figure("smallest", metric("measurements.min").mean(0))
 }
 
-/// What n* is, in words.
+/// Describes n* in words.
 fn n_star_in_words(runs: &Runs) -> String {
     let [count, weight] = measured_until_explored(runs);
     let clipped = if weight > MOST_COUNTS {
@@ -98,7 +98,7 @@ fn n_star_in_words(runs: &Runs) -> String {
     )
 }
 
-/// Footnote 2: counting with n* explores nearly all.
+/// Tests claim 9 (footnote 2): counting with n* explores nearly all cells.
 pub fn claim_9(runs: &Runs) -> Finding {
     let n_star = with_n_star(runs);
     let compared: Vec<Strategy> = [Strategy::Cl].into_iter().chain(n_star).collect();
@@ -119,7 +119,7 @@ pub fn claim_9(runs: &Runs) -> Finding {
     .note(n_star_in_words(runs))
 }
 
-/// Section 5.1: the map of CL is more accurate than that of counting once.
+/// Tests claim 20 (section 5.1): the map of CL is more accurate than that of counting once.
 pub fn claim_20(runs: &Runs) -> Finding {
     let both = [Strategy::Cl, ONCE];
     let difference = |metric: &str| runs.paired(&both, metric).difference(0, 1);
@@ -210,7 +210,7 @@ mod tests {
             ];
             claim_9(&series(&[("CL", &cl)])).notes.concat()
         };
-        // The largest of a series is a little above its mean.
+        // The largest of a series is slightly above its mean.
         assert!(note(300.0).contains("measured up to 10"), "{}", note(300.0));
         assert!(note(300.0).contains("weight of up to 30") && note(300.0).contains("not clipped"));
         assert!(note(600.0).contains("clipped to 520"));

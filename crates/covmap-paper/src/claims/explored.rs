@@ -1,18 +1,21 @@
-//! Whether runs explored their world: a run that ended early needs few scans and a short path,
-//! and must not win by that.
+//! The condition that runs explored their world.
+//!
+//! A run that ended early needs few scans and a short path, and must not win by that.
 
 use crate::runs::{Run, Runs};
 use crate::techniques::COMPLETENESS;
 use crate::trial::Trial;
 use covmap_plan::Strategy;
 
-/// A run explored its world if the robot knows this share of what it could reach.
+/// A run explored its world if the robot knows this share of the cells that it could reach.
 const COMPLETE: f64 = 0.9;
-/// Not more of the runs that failed are named.
+/// The largest number of failed runs that are named.
 const MOST_NAMES: usize = 12;
 
-/// The condition on the runs that a claim compares: nine in ten of all explored their world, and
-/// of each strategy more than half. Those that did not are named.
+/// Returns the condition on the runs that a claim compares.
+///
+/// Nine in ten of all runs explored their world, and more than half of the runs of each strategy.
+/// The others are named.
 pub(super) fn explored(runs: &Runs, strategies: &[Strategy]) -> Trial {
     let all: Vec<&Run> = strategies.iter().flat_map(|strategy| runs.with(*strategy)).collect();
     let failed: Vec<&Run> = all.iter().copied().filter(|run| !is_explored(run)).collect();
@@ -44,7 +47,7 @@ fn is_explored(run: &Run) -> bool {
     run.value(COMPLETENESS) >= COMPLETE
 }
 
-/// The runs that failed; none if there are none.
+/// Returns the names of the failed runs, if any.
 fn names(failed: &[&Run]) -> Option<String> {
     let name = |run: &&Run| {
         let Run { world, strategy, start, seed, .. } = run;
@@ -63,7 +66,7 @@ mod tests {
     use super::*;
     use crate::runs::made_up;
 
-    /// Ten runs each of CL and IG, and how many of them failed.
+    /// Returns the condition for ten runs each of CL and IG, and the numbers of failed runs.
     fn condition(failed: [u64; 2]) -> Trial {
         let mut runs = Runs::default();
         for (strategy, failed) in ["CL", "IG"].into_iter().zip(failed) {
@@ -94,7 +97,7 @@ mod tests {
 
     #[test]
     fn more_than_half_of_each_strategy_must_explore() {
-        // Two of thirty runs failed: all of a strategy with two runs.
+        // Two of thirty runs failed: all runs of one strategy.
         let mut runs = Runs::default();
         for (strategy, seeds, completeness) in [("CL", 28, 0.95), ("IG", 2, 0.5)] {
             for seed in 1..=seeds {

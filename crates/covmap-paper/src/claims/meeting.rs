@@ -1,4 +1,4 @@
-//! Section 5.1, Fig. 6: where scan counting and CL meet. Claim 8.
+//! Section 5.1, Fig. 6: the share at which the curves of scan counting and CL meet. Claim 8.
 
 use super::explored;
 use crate::crossing::{Crossing, Point, crossing};
@@ -10,10 +10,10 @@ use covmap_statistics::Estimate;
 use std::collections::BTreeMap;
 
 const EXPLORED: &str = "share_explored";
-/// The curves must meet at no larger share.
+/// The largest share at which the curves may meet.
 const LIMIT: f64 = 0.90;
 
-/// Fig. 6: from which share of explored cells on CL's path is shorter.
+/// Tests claim 8 (Fig. 6): the share of explored cells from which CL's path is shorter.
 pub fn claim_8(runs: &Runs) -> Finding {
     let [discounted, plain] = [true, false].map(|discounted| meetings(runs, discounted));
     let what = "share of explored cells where the curves meet, discounted counts, mean over starts";
@@ -27,7 +27,7 @@ pub fn claim_8(runs: &Runs) -> Finding {
     .figure("share that CL explores", runs.paired(&[Strategy::Cl], EXPLORED).mean(0))
 }
 
-/// Where the curve of the counting runs of each start has CL's path from there.
+/// Returns, for each start, the crossing of the counting runs' curve with the path of CL.
 fn meetings(runs: &Runs, discounted: bool) -> Vec<Crossing> {
     let mut starts: BTreeMap<usize, [Vec<Point>; 2]> = BTreeMap::new();
     for run in &runs.runs {
@@ -42,7 +42,8 @@ fn meetings(runs: &Runs, discounted: bool) -> Vec<Crossing> {
     starts.into_values().filter_map(|[counting, cl]| crossing(&counting, &cl)).collect()
 }
 
-/// The mean over starts of the smallest shares at which the curves may meet, and of the largest.
+/// Returns the means over starts of the smallest and the largest shares at which the curves may
+/// meet.
 fn ends(meetings: &[Crossing]) -> Option<[Estimate; 2]> {
     let mean = |end: usize| {
         let values: Vec<f64> = meetings.iter().map(|meeting| meeting.ends()[end]).collect();
@@ -51,7 +52,7 @@ fn ends(meetings: &[Crossing]) -> Option<[Estimate; 2]> {
     Some([mean(0)?, mean(1)?])
 }
 
-/// In how many starts the curves were not seen to meet; none if they were in all.
+/// Returns the number of starts in which the curves did not meet, in words, if there are any.
 fn unmet(meetings: &[Crossing]) -> Option<String> {
     let shares = |of: &dyn Fn(&Crossing) -> Option<f64>| -> Vec<String> {
         meetings.iter().filter_map(of).map(digits).collect()
@@ -93,7 +94,7 @@ mod tests {
     use crate::runs::made_up;
     use crate::trial::{Verdict, check};
 
-    /// Counts up to a share of `most` from four starts, and CL with a path of its own.
+    /// Returns counts up to a share of `most` from four starts, and CL with a path of its own.
     fn fig_6(cl: (f64, f64), most: f64) -> Runs {
         let mut runs = Runs::default();
         for start in 0..4usize {
@@ -121,12 +122,12 @@ mod tests {
 
     #[test]
     fn curves_that_do_not_meet_are_not_taken_for_any_share() {
-        // CL drives more than every count, and the counts came to .5 of the cells only.
+        // CL drives more than every count, and the counts reached only .5 of the cells.
         let finding = claim_8(&fig_6((150.0, 0.99), 0.5));
         let reason = finding.trials[1].reason.clone().unwrap_or_default();
         assert!(reason.contains("in 4 of 4 starts CL drives more"), "{reason}");
         check(finding, Verdict::Undecided);
-        // From three starts of four they meet early, which does not make up for the fourth.
+        // From three starts of four the curves meet early, which does not make up for the fourth.
         let mut runs = fig_6((20.0, 0.99), 1.0);
         let cl = |run: &&mut crate::runs::Run| run.strategy == Strategy::Cl && run.start == 3;
         for run in runs.runs.iter_mut().filter(cl) {

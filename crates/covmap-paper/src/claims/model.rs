@@ -9,14 +9,16 @@ use covmap::{Histogram, bin_coverage};
 use covmap_model::SensorModel;
 use covmap_statistics::{Estimate, share_estimate};
 
-/// In at least this share of the seeds.
+/// The smallest share of the seeds in which a claim must hold.
 const MOST_SEEDS: f64 = 0.9;
 
-/// The slab at the far side of the cell, where Eq. (10) implies a coverage of .2.
+/// The case that decides: the slab at the far side of the cell, where Eq. (10) implies a coverage
+/// of .2.
 const DECIDING: char = 'a';
 
-/// Fig. 1: occupancy goes to 1 where coverage stays at .2. The case of Eq. (10) decides; the other
-/// ways to cover the cell are figures.
+/// Tests claim 1 (Fig. 1): occupancy goes to 1 while coverage stays at .2.
+///
+/// The case of Eq. (10) decides; the other ways to cover the cell are figures.
 pub fn claim_1(cells: &[PartialCell]) -> Finding {
     let (deciding, others): (Vec<_>, Vec<_>) = cells.iter().partition(|cell| cell.case == DECIDING);
     let mut trials: Vec<Trial> = deciding
@@ -36,7 +38,8 @@ pub fn claim_1(cells: &[PartialCell]) -> Finding {
     figures.fold(finding, |finding, (what, share)| finding.figure(&what, share))
 }
 
-/// In which share of the seeds both halves of Fig. 1 are so, for one way to cover the cell.
+/// Returns the shares of the seeds in which each half of Fig. 1 holds, for one way to cover the
+/// cell.
 fn fig_1(cell: &PartialCell) -> [(String, Option<Estimate>); 2] {
     let last = MEASUREMENTS - 1;
     let name = format!("({}) {}: share of seeds (Agresti–Coull)", cell.case, cell.what);
@@ -48,7 +51,7 @@ fn fig_1(cell: &PartialCell) -> [(String, Option<Estimate>); 2] {
     ]
 }
 
-/// Fig. 2: the posterior of that cell has one peak, near .2.
+/// Tests claim 2 (Fig. 2): the posterior of that cell has one peak, near .2.
 pub fn claim_2(cells: &[PartialCell]) -> Finding {
     let statement = "Fig. 2: after 30 measurements the posterior of that cell has one peak, at .2 ± .1, in at least 90 % of the seeds";
     let peaked = |cell: &PartialCell| {
@@ -75,8 +78,10 @@ fn share(
     share_estimate(cell.series.iter().filter(|series| is(series)).count(), seeds)
 }
 
-/// The coverages of the peaks of a posterior: bins, or runs of equal ones (the first of them
-/// counts), that are above what stands beside them and hold at least 1 %.
+/// Returns the coverages of the peaks of a posterior.
+///
+/// A peak is a bin, or a run of equal bins (its first bin counts), that is above its neighbours and
+/// holds at least 1 %.
 fn peaks(posterior: &[f64]) -> Vec<f64> {
     let bins = posterior.len();
     let (mut peaks, mut first) = (Vec::new(), 0);
@@ -92,7 +97,7 @@ fn peaks(posterior: &[f64]) -> Vec<f64> {
     peaks
 }
 
-/// Fig. 3: mass near 0 in front, near 1 just behind, broadest in the end cell.
+/// Tests claim 3 (Fig. 3): mass near 0 in front, near 1 just behind, broadest in the end cell.
 pub fn claim_3(model: &SensorModel) -> Finding {
     let r = model.resolution();
     let front = (1..).map(|i| f64::from(i) * r).take_while(|d| *d < RANGE - r);
@@ -133,7 +138,7 @@ pub fn claim_3(model: &SensorModel) -> Finding {
     ))
 }
 
-/// Section 3: fitted parameters explain the truth better than unfitted ones.
+/// Tests claim 4 (section 3): fitted parameters explain the truth better than unfitted ones.
 pub fn claim_4(fitting: &Fitting) -> Finding {
     let trial = Trial::new(
         "mean difference of the log-likelihood of a cell on held-out worlds, by scenarios, fitted − unfitted [nats]",
@@ -155,8 +160,8 @@ pub fn claim_4(fitting: &Fitting) -> Finding {
     .note(fitting.what.clone())
 }
 
-/// Section 2: on the cells of an oblique wall occupancy goes to 1; coverage is nearer to the
-/// truth.
+/// Tests claim 21 (section 2): on the cells of an oblique wall, occupancy goes to 1, and coverage
+/// is nearer to the truth.
 pub fn claim_21(oblique: &Oblique) -> Finding {
     Finding::new(
         21,
@@ -247,7 +252,7 @@ mod tests {
             by_scenario: groups.iter().map(|group| group.to_vec()).collect(),
             what: String::new(),
         };
-        // Eight worlds, but two scenarios only.
+        // There are eight worlds, but only two scenarios.
         let poses: &[f64] = &[0.1, 0.12, 0.09, 0.11];
         check(claim_4(&by_scenario(&[poses, poses])), Verdict::Undecided);
         let good: [&[f64]; 6] =

@@ -11,7 +11,7 @@ use covmap_statistics::Estimate;
 /// The least mean τ: of ten pairs of five strategies, eight are in the same order.
 const LEAST_TAU: f64 = 0.6;
 
-/// "Further experiments in alternative environments showed similar results."
+/// Tests claim 17: "Further experiments in alternative environments showed similar results."
 pub fn claim_17(runs: &Runs, places: &Runs) -> Finding {
     let reference = runs.worlds();
     let worlds = places.worlds().into_iter().filter(|world| !reference.contains(world));
@@ -53,7 +53,7 @@ fn over_worlds(taus: &[Estimate]) -> Option<Estimate> {
     Some(Estimate { standard_error: mean.standard_error.max(within), ..mean })
 }
 
-/// Whether a real building was among the worlds.
+/// Says in words whether a real building was among the worlds.
 pub(crate) fn buildings(maps: &[String]) -> String {
     if maps.is_empty() {
         "no real building was among the worlds: `--world building=FILE` names a map of one"
@@ -63,8 +63,8 @@ pub(crate) fn buildings(maps: &[String]) -> String {
     }
 }
 
-/// Kendall's τ between the mean ranking in the world of Fig. 7 and that of each unit in another
-/// one.
+/// Returns Kendall's τ between the mean ranking in the world of Fig. 7 and the ranking of each unit
+/// in another world.
 fn agreement(reference: &Runs, there: &Runs, metric: &str) -> Option<Estimate> {
     let known = reference.strategies();
     let common: Vec<Strategy> =

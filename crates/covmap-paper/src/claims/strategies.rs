@@ -9,13 +9,13 @@ use covmap_statistics::Estimate;
 
 const IG_CL_1: Strategy = Strategy::IgCl { alpha: 1.0 };
 
-/// The strategies of Fig. 7 but one, each with the ratio of its mean to that one's.
+/// Returns the strategies of Fig. 7 except one, each with the ratio of its mean to that of the one.
 fn against(runs: &Runs, metric: &str, one: Strategy) -> Vec<(Strategy, Option<Estimate>)> {
     let others = runs.strategies().into_iter().filter(|s| *s != one && s.counting().is_none());
     others.map(|other| (other, runs.paired(&[other, one], metric).ratio(0, 1))).collect()
 }
 
-/// A test for each of some strategies; without any there are no data.
+/// Returns a test for each strategy; without strategies, a test without data.
 fn trials(
     ratios: Vec<(Strategy, Option<Estimate>)>,
     (what, one): (&str, Strategy),
@@ -32,7 +32,7 @@ fn with_condition(runs: &Runs, trials: Vec<Trial>) -> Vec<Trial> {
     with_condition_on(runs, &runs.strategies(), trials)
 }
 
-/// Tests that compare some strategies, with the condition that these explored their world.
+/// Adds to tests that compare strategies the condition that these explored their world.
 fn with_condition_on(runs: &Runs, compared: &[Strategy], mut trials: Vec<Trial>) -> Vec<Trial> {
     trials.insert(0, explored(runs, compared));
     trials
@@ -43,7 +43,7 @@ const MARGIN: f64 = 0.1;
 /// IG_CL(1.0) is as good as IG if it is no farther from it than this share of the way from IG to CL.
 const SPAN_SHARE: f64 = 0.2;
 
-/// Fig. 7 (a): IG needs the fewest measurements. Others may need as few, within a margin: the paper draws
+/// Tests claim 10 (Fig. 7 (a)): IG needs the fewest measurements. Others may need as few, within a margin: the paper draws
 /// IG_CL with a large α beside it.
 pub fn claim_10(runs: &Runs) -> Finding {
     let ratios = against(runs, SCANS, Strategy::Ig);
@@ -77,7 +77,7 @@ fn by_strategy(trials: &[Trial]) -> String {
     )
 }
 
-/// Fig. 7 (a): IG_CL(1.0) needs about as many as IG.
+/// Tests claim 11 (Fig. 7 (a)): IG_CL(1.0) needs about as many as IG.
 pub fn claim_11(runs: &Runs) -> Finding {
     let three = [IG_CL_1, Strategy::Ig, Strategy::Cl];
     let units = runs.paired(&three, SCANS);
@@ -95,7 +95,7 @@ pub fn claim_11(runs: &Runs) -> Finding {
     .figure("scans, IG_CL:1 / IG", units.ratio(0, 1))
 }
 
-/// Fig. 7 (a): CL needs the most.
+/// Tests claim 12 (Fig. 7 (a)): CL needs the most.
 pub fn claim_12(runs: &Runs) -> Finding {
     let ratios = against(runs, SCANS, Strategy::Cl);
     Finding::new(
@@ -105,7 +105,7 @@ pub fn claim_12(runs: &Runs) -> Finding {
     )
 }
 
-/// Fig. 7 (b): CL drives the shortest path.
+/// Tests claim 13 (Fig. 7 (b)): CL drives the shortest path.
 pub fn claim_13(runs: &Runs, driving: &Runs) -> Finding {
     let ratios = against(runs, PATH, Strategy::Cl);
     let trials = trials(ratios, ("path", Strategy::Cl), Bound::Above(1.0));
@@ -119,7 +119,7 @@ pub fn claim_13(runs: &Runs, driving: &Runs) -> Finding {
     while_driving(finding, against(driving, PATH, Strategy::Cl), Strategy::Cl)
 }
 
-/// Fig. 7 (b): IG drives by far the longest.
+/// Tests claim 14 (Fig. 7 (b)): IG drives by far the longest path.
 pub fn claim_14(runs: &Runs, driving: &Runs) -> Finding {
     let ratios = against(runs, PATH, Strategy::Ig);
     let mut trials = trials(ratios, ("path", Strategy::Ig), Bound::Below(1.0));
@@ -133,7 +133,7 @@ pub fn claim_14(runs: &Runs, driving: &Runs) -> Finding {
     while_driving(finding, against(driving, PATH, Strategy::Ig), Strategy::Ig)
 }
 
-/// The same ratios when measuring while driving, as figures.
+/// Adds the same ratios for measuring while driving, as figures.
 fn while_driving(
     finding: Finding,
     ratios: Vec<(Strategy, Option<Estimate>)>,
@@ -144,11 +144,11 @@ fn while_driving(
     })
 }
 
-/// Section 5.2: integrating while driving, CL is better than IG.
+/// Tests claim 19 (section 5.2): with integration while driving, CL is better than IG.
 pub fn claim_19(runs: &Runs, speed: f64) -> Finding {
     let both = [Strategy::Ig, Strategy::Cl];
     let units = runs.paired(&both, PATH);
-    // Integrating costs no time.
+    // Integration takes no time.
     let time = runs.paired_by(&both, |run| run.value(PATH) / speed).difference(0, 1);
     Finding::new(
         19,
@@ -170,7 +170,7 @@ mod tests {
     use crate::runs::series;
     use crate::trial::{Verdict, check};
 
-    /// Scans and path of CL, IG, IG_WIN(2), IG_CL(.3), IG_CL(1).
+    /// Returns runs with the scans and paths of CL, IG, IG_WIN(2), IG_CL(.3) and IG_CL(1).
     fn runs(scans: [f64; 5], path: [f64; 5]) -> Runs {
         let row =
             |i: usize| [("completeness", 0.99), ("scans", scans[i]), ("path_length_m", path[i])];

@@ -11,10 +11,10 @@ use covmap_statistics::Estimate;
 use std::collections::BTreeMap;
 
 const IG_CL_3: Strategy = Strategy::IgCl { alpha: 0.3 };
-/// What a scan costs, in paths and scans of CL.
+/// The weights of a scan against the path, both as shares of CL's.
 const WEIGHTS: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 4.0];
 
-/// Section 5.2: IG_CL(.3) is a good trade-off, better than IG_WIN.
+/// Tests claim 15 (section 5.2): IG_CL(.3) is a good trade-off, better than IG_WIN.
 pub fn claim_15(runs: &Runs, driving: &Runs) -> Finding {
     let compared: Vec<Strategy> =
         [Strategy::Cl, IG_CL_3].into_iter().chain(windows(runs)).collect();
@@ -33,13 +33,14 @@ pub fn claim_15(runs: &Runs, driving: &Runs) -> Finding {
     })
 }
 
-/// IG_WIN with all its radii.
+/// Returns IG_WIN with all its radii.
 fn windows(runs: &Runs) -> Vec<Strategy> {
     runs.strategies().into_iter().filter(|s| matches!(s, Strategy::IgWin { .. })).collect()
 }
 
-/// The mean cost of IG_CL(.3) less that of IG_WIN with the radius that was best on the other
-/// seeds (on the same, if there is only one).
+/// Returns the mean cost of IG_CL(.3) less that of the best IG_WIN.
+///
+/// The radius is the best on the other seeds (on the same seed, if there is only one).
 fn advantage(runs: &Runs, weight: f64) -> Option<Estimate> {
     let windows = windows(runs);
     if windows.is_empty() {
@@ -52,7 +53,7 @@ fn advantage(runs: &Runs, weight: f64) -> Option<Estimate> {
     };
     let (path, scans) = (cl(PATH), cl(SCANS));
     let cost = |run: &crate::runs::Run| run.value(PATH) / path + weight * run.value(SCANS) / scans;
-    // Costs of each seed alone: the best radius for it comes from the others.
+    // The costs of each seed alone: the best radius for a seed comes from the others.
     let mut seeds: BTreeMap<u64, Runs> = BTreeMap::new();
     for run in &runs.runs {
         seeds.entry(run.seed).or_default().runs.push(run.clone());
@@ -94,7 +95,7 @@ fn best_window(
         .map(|(_, window)| window)
 }
 
-/// Eq. (16): IG_CL goes from CL to IG as α grows.
+/// Tests claim 16 (Eq. (16)): IG_CL goes from CL to IG as α grows.
 pub fn claim_16(limits: &Limits, runs: &Runs) -> Finding {
     Finding::new(
         16,
@@ -110,13 +111,13 @@ pub fn claim_16(limits: &Limits, runs: &Runs) -> Finding {
     .note(limits.what.clone())
 }
 
-/// How a metric grows with α in each unit, from CL (0) over all IG_CL to IG (∞).
+/// Returns the trend of a metric with α in each unit, from CL (0) over all IG_CL to IG (∞).
 fn trend(runs: &Runs, metric: &str, sign: f64) -> Option<Estimate> {
     let (strategies, alphas) = with_alpha(runs);
     mean_tau(&alphas, &runs.paired_by(&strategies, |run| sign * run.value(metric)))
 }
 
-/// CL, all IG_CL and IG, with their α.
+/// Returns CL, all IG_CL and IG, with their α.
 fn with_alpha(runs: &Runs) -> (Vec<Strategy>, Vec<f64>) {
     let alpha = |strategy: &Strategy| match strategy {
         Strategy::Cl => Some(0.0),

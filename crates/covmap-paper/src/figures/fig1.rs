@@ -1,11 +1,11 @@
-//! Fig. 1: occupancy against coverage for a cell that is covered 20 %.
+//! Fig. 1: occupancy against coverage for a cell with a coverage of 20 %.
 
 use crate::error::Result;
 use crate::partial_cells::{COVERAGE, MEASUREMENTS, PartialCell, spread};
 use covmap_draw::FigureFolder;
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 
-/// Error bars stand at multiples of this number of measurements.
+/// The interval between error bars, in measurements.
 const BARS: usize = 10;
 
 /// Draws the figure, and writes the numbers behind it.

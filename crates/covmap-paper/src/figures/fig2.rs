@@ -50,7 +50,7 @@ fn points(cell: &PartialCell) -> Vec<ChartPoint> {
     bins(cell).map(point).collect()
 }
 
-/// The coverage of each bin, with mean and percentiles of its probability.
+/// Returns the coverage of each bin, with mean and percentiles of its probability.
 fn bins(cell: &PartialCell) -> impl Iterator<Item = (f64, (f64, f64, f64))> + '_ {
     let bins = cell.series.first().map_or(0, |series| series.posterior.len());
     (0..bins).map(move |bin| {

@@ -1,4 +1,4 @@
-//! Fig. 3: what the sensor model makes of an echo from 1 m.
+//! Fig. 3: the answer of the sensor model to an echo from 1 m.
 
 use crate::echo::{RANGE, column};
 use crate::error::Result;
@@ -14,7 +14,7 @@ pub(crate) fn write(output: &FigureFolder, models: &[(&str, &SensorModel)]) -> R
         output.write(&format!("figure3-{name}.csv"), echo_table(model, RANGE).0)?;
     }
     let panels: Vec<HeatMap> = models.iter().map(|(name, model)| panel(name, model)).collect();
-    // One scale for all, up to the largest value.
+    // All panels share one scale, up to the largest value.
     let values = panels.iter().flat_map(|panel| &panel.values).filter(|value| value.is_finite());
     let largest = values.fold(0.0, |a: f64, b| a.max(*b));
     let scaled = |mut panel: HeatMap| {

@@ -18,13 +18,14 @@ use nalgebra::Point2;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// The maps of Fig. 5: counting once, CL on coverage maps, extended counting; whether the
-/// occupancy is shown, as in the paper.
+/// The maps of Fig. 5: counting once, CL on coverage maps, extended counting; and whether each
+/// shows the occupancy, as in the paper.
 const MAPS: [(char, Strategy, bool); 3] =
     [('a', ONCE, true), ('b', Strategy::Cl, false), ('c', EXTENDED, true)];
 
-/// Repeats the first recorded run of each technique, since maps are not recorded, and draws its
-/// map with the recorded path.
+/// Repeats the first recorded run of each technique, and draws its map with the recorded path.
+///
+/// The run is repeated because maps are not recorded.
 pub(crate) fn write(
     output: &FigureFolder,
     session: &Session<'_>,
@@ -48,7 +49,7 @@ pub(crate) fn write(
     MAPS.into_par_iter().map(draw).collect()
 }
 
-/// Does a run again, with the path that was recorded of it.
+/// Repeats a run, with its recorded path.
 fn repeat(plan: &Plan, job: &Job, session: &Session<'_>, dir: &Path) -> Result<(Run, Experiment)> {
     let key = &job.planned.key;
     let recorded = load_paths(dir, key)?;
@@ -62,7 +63,7 @@ fn repeat(plan: &Plan, job: &Job, session: &Session<'_>, dir: &Path) -> Result<(
     Ok((run, experiment))
 }
 
-/// A run with where it was.
+/// A run with its world and its experiment.
 struct Pictured<'a> {
     world: &'a World,
     experiment: Experiment,
@@ -83,8 +84,10 @@ impl Pictured<'_> {
     }
 }
 
-/// The rows of Table 1: technique, path, share of uncertain cells, and scans, each with its
-/// interval; and how many of how many runs were cut short.
+/// Returns the rows of Table 1.
+///
+/// A row has the technique, path, share of uncertain cells and scans, each with its interval, and
+/// the number of runs that were cut short, out of all.
 pub(crate) fn table_1(runs: &Runs) -> Vec<(Strategy, [String; 5])> {
     let row = |strategy: &Strategy| {
         let mean = |metric: &str| {

@@ -30,10 +30,11 @@ pub(crate) fn write(output: &FigureFolder, columns: &[(&str, &Runs)]) -> Result<
     Ok(output.figure("figure6", &figure)?)
 }
 
-/// What follows the strategy and its parameters in the table; 1 for a run that was cut short.
+/// The columns of the table after the strategy and its parameters; `cut_short` is 1 for a run that
+/// was cut short.
 const NUMBERS: [&str; 5] = ["start", "seed", "cut_short", "explored", "path_m"];
 
-/// What a hollow mark means.
+/// The meaning of a hollow mark.
 const HOLLOW: &str = "; hollow: cut short, and to the end both would be larger";
 
 fn row(config: &str, run: &Run) -> Vec<String> {
@@ -87,7 +88,7 @@ fn point(run: &Run) -> Point {
     Point { path: run.value("path_length_m"), share: run.value("share_explored") }
 }
 
-/// The mean of CL, with the interval of its path.
+/// Returns the mean of CL, with the interval of its path.
 fn cross(runs: &[&Run]) -> ChartPoint {
     let points: Vec<Point> = runs.iter().map(|run| point(run)).collect();
     let paths: Vec<f64> = points.iter().map(|p| p.path).collect();

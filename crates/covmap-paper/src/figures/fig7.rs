@@ -9,13 +9,13 @@ use covmap_draw::FigureFolder;
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 use covmap_plan::Strategy;
 
-/// The charts of Fig. 7: a metric, and what it is called.
+/// The charts of Fig. 7: a metric, and its names.
 const METRICS: [(&str, &str, &str); 2] = [
     ("scans", "(a) number of measurements", "scans"),
     ("path_length_m", "(b) length of the path", "path [m]"),
 ];
 
-/// Draws (a) and (b) for some series of runs, each with its name, as `NAME.svg` and `.png`.
+/// Draws (a) and (b) for some named series of runs, as `NAME.svg` and `.png`.
 pub(crate) fn write(
     output: &FigureFolder,
     name: &str,
@@ -49,14 +49,15 @@ pub(crate) fn write(
     Ok(output.figure(name, &figure)?)
 }
 
-/// What follows the strategy and its parameters in the table.
+/// The columns of the table after the strategy and its parameters.
 const NUMBERS: [&str; 6] = ["metric", "n", "cut_short", "mean", "low", "high"];
 
-/// What a hollow mark means.
+/// The meaning of a hollow mark.
 const HOLLOW: &str =
     "; hollow: some of the runs were cut short, and to their end the mean would be larger";
 
-/// The numbers as they are, whatever can be drawn; an interval that is not known is left empty.
+/// Returns the numbers of a row, whether they can be drawn or not; an unknown interval is left
+/// empty.
 fn row(column: &str, runs: &Runs, strategy: Strategy, metric: &str) -> Vec<String> {
     let mean = runs.paired(&[strategy], metric).mean(0);
     let (low, high) = mean.and_then(|mean| mean.interval(0.95)).unzip();
@@ -78,7 +79,7 @@ fn chart(
 ) -> Chart {
     let names = strategies.iter().map(|strategy| strategy.to_string().replacen(':', "\n", 1));
     let series = |(index, (name, runs)): (usize, &(&str, &Runs))| {
-        // Beside each other.
+        // The series stand side by side.
         let aside = 0.16 * (index as f64 - 0.5 * (columns.len() as f64 - 1.0));
         let at = |(place, strategy): (usize, &Strategy)| {
             point(runs, *strategy, metric, place as f64 + 1.0 + aside)
@@ -99,14 +100,14 @@ fn chart(
     }
 }
 
-/// The mean of a strategy with its interval, as it is drawn.
+/// Returns the mean of a strategy with its interval, as drawn.
 fn point(runs: &Runs, strategy: Strategy, metric: &str, x: f64) -> ChartPoint {
     let Some(mean) = runs.paired(&[strategy], metric).mean(0) else {
         return ChartPoint::new(x, f64::NAN);
     };
     let (low, high) = mean.interval(0.95).unwrap_or((mean.value, mean.value));
-    // On a logarithmic axis a bar to zero or below would be endless, and one to nearly zero would
-    // leave no room for the others: both are drawn as far as the frame.
+    // On a logarithmic axis, a bar to zero or below would be endless, and one to nearly zero would
+    // leave no room for the others. Both are drawn up to the frame.
     let low = if low < mean.value / 10.0 { f64::NEG_INFINITY } else { low };
     let hollow = runs.cut_short(strategy) > 0;
     ChartPoint { low, high, hollow, ..ChartPoint::new(x, mean.value) }
@@ -115,7 +116,7 @@ fn point(runs: &Runs, strategy: Strategy, metric: &str, x: f64) -> ChartPoint {
 /// Draws (c) and (d), the first run of IG and of CL of a setting.
 ///
 /// # Errors
-/// If its paths were not kept, or cannot be read.
+/// If the run's paths were not kept, or cannot be read.
 pub(crate) fn write_trajectories(
     output: &FigureFolder,
     series: &Campaigned,
@@ -150,8 +151,8 @@ mod tests {
     use super::*;
     use crate::runs::{Row, made_up};
 
-    /// The rows of `figure7.csv` and the drawing of some runs of CL from different starts, of
-    /// which some were cut short.
+    /// Returns the rows of `figure7.csv` and the drawing of runs of CL from different starts;
+    /// `cut_short` of them were cut short.
     fn drawn(scans: &[f64], cut_short: usize) -> (Vec<Vec<String>>, String) {
         let values: Vec<[(&str, f64); 2]> =
             scans.iter().map(|n| [("scans", *n), ("path_length_m", 1.0)]).collect();
@@ -177,7 +178,8 @@ mod tests {
         let (rows, svg) = drawn(&[1.0, 1.0, 100.0], 0);
         let [mean, low, high] = [9, 10, 11].map(|i| rows[0][i].parse::<f64>().unwrap());
         assert!((mean - 34.0).abs() < 1e-9);
-        // Symmetric about the mean, and by Student's t with two degrees of freedom below zero.
+        // The interval is symmetric about the mean; by Student's t with two degrees of freedom it
+        // reaches below zero.
         assert!(low < 0.0 && ((mean - low) - (high - mean)).abs() < 1e-9, "{low} {high}");
         assert!(!svg.contains("NaN"));
     }

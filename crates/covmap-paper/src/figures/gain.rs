@@ -1,4 +1,4 @@
-//! The figures of `docs/gain.md`: how the expected information gain is computed.
+//! The figures of `docs/gain.md`: the computation of the expected information gain.
 //!
 //! All of them show numbers of a run in a small laboratory, up to one of its decisions.
 
@@ -20,17 +20,18 @@ use covmap_lab::files;
 use covmap_plan::Strategy;
 use moment::Moment;
 
-/// The decision that is shown, counted from 0.
+/// The decision in the figures, counted from 0.
 const DECISION: usize = 28;
 const QUICK_DECISION: usize = 3;
 
-/// The side of cells for a quick look \[m\].
+/// The side of cells in quick figures \[m\].
 const COARSE: f64 = 0.2;
 
 /// Draws all six.
 pub fn write(output: &FigureFolder, quick: bool) -> Result<()> {
     let by_cause = configuration(files::config(None, built_in::B21R)?.0, quick);
-    // Eq. (9) with the same robot; configs/sonar8.ron has parameters that depend on the range.
+    // Eq. (9) with the same robot, because configs/sonar8.ron has parameters that depend on the
+    // range.
     let mut by_product = by_cause.clone();
     by_product.model.update = files::config(None, built_in::SONAR8)?.0.model.update;
     let decision = if quick { QUICK_DECISION } else { DECISION };
@@ -45,7 +46,7 @@ pub fn write(output: &FigureFolder, quick: bool) -> Result<()> {
     Ok(output.drawing("gain-sums", &suffix::draw(&moment, seen))?)
 }
 
-/// A configuration that explores by IG.
+/// Returns a configuration that explores by IG.
 fn configuration(config: Config, quick: bool) -> Config {
     let mut config = config;
     config.planner.strategy = Strategy::Ig;

@@ -1,4 +1,4 @@
-//! Figures that are maps: pictures, and drawings that hold them.
+//! Figures that are maps: pictures, and drawings that embed them.
 
 use crate::error::Result;
 use base64::Engine;
@@ -18,13 +18,13 @@ const START_SIZE: f64 = 16.0;
 /// The side of the cells of the truth behind a path \[m\].
 const SIDE: f64 = 0.05;
 
-/// A driven path with what it is.
+/// A driven path with its title.
 #[derive(Debug, Clone)]
 pub(crate) struct Trajectory {
     pub title: String,
     pub subtitle: String,
     pub paths: Paths,
-    /// Whether the run ended before all was explored.
+    /// Whether the run ended before its world was explored.
     pub cut_short: bool,
 }
 
@@ -64,9 +64,9 @@ pub(crate) fn write_trajectory(
     write_picture(output, name, &picture)
 }
 
-/// The world of a campaign.
+/// Returns the world of a campaign.
 pub(crate) fn world(named: &NamedWorld) -> Result<World> {
-    // Coverage does not depend on how a surface answers.
+    // Coverage does not depend on the answer of a surface.
     if named.file.extension().is_some_and(|extension| extension == "ron") {
         let scenario = read_ron(&named.file)?;
         let (turn, shift) = (named.turn.to_radians(), named.shift);
@@ -75,13 +75,13 @@ pub(crate) fn world(named: &NamedWorld) -> Result<World> {
     Ok(files::world(&named.file, Surface::Rough)?)
 }
 
-/// Writes a picture as `NAME.png`, and as a drawing that holds it, `NAME.svg`.
+/// Writes a picture as `NAME.png`, and embedded in a drawing, `NAME.svg`.
 pub(crate) fn write_picture(output: &FigureFolder, name: &str, picture: &Picture) -> Result<()> {
     let png = output.image(name, picture.to_png())?;
     Ok(output.write(&format!("{name}.svg"), holding(&png))?)
 }
 
-/// A drawing of the size of a PNG, which holds it.
+/// Returns a drawing of the size of a PNG that embeds it.
 fn holding(png: &[u8]) -> String {
     // Width and height stand at fixed places in the header of every PNG.
     let side = |at: usize| {

@@ -1,4 +1,4 @@
-//! What a way costs with its turns.
+//! The cost of a path with its turns.
 
 use super::Candidates;
 use crate::turning::straight;
@@ -6,8 +6,8 @@ use crate::{Planner, Strategy, turns};
 use covmap::Cell;
 
 impl Planner {
-    /// The cost of a candidate for a robot in the cell `from`: d_c(l, x) \[m\], and for IG_CL what the
-    /// turns on the way that it would drive cost beside.
+    /// The cost of a candidate for a robot in the cell `from`: d_c(l, x) \[m\], for IG_CL plus the cost of
+    /// the turns on the path that the robot would drive.
     pub(crate) fn cost(&self, candidates: &Candidates, from: Cell, index: usize) -> f64 {
         let length = candidates.costs.cost(index).unwrap_or(f64::INFINITY);
         let of_radian = self.parameters.turn_cost;

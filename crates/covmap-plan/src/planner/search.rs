@@ -1,11 +1,11 @@
-//! Where candidates are searched, one place after the other.
+//! The order in which the planner searches for candidates.
 
 use super::Candidates;
 use crate::Planner;
 use crate::parameters::LeastChange;
 use covmap::{Cell, CoverageMap};
 
-/// Where candidates are searched.
+/// Where the planner searches for candidates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Search {
     /// In reach; for IG_WIN in the window.
@@ -17,13 +17,13 @@ pub(crate) enum Search {
 }
 
 impl Search {
-    /// Each only where the one before it came to nothing.
+    /// Each search runs only if the one before it found nothing.
     pub(crate) const IN_ORDER: [Self; 3] =
         [Self::InReach, Self::TowardsGround, Self::BeyondPassage];
 }
 
 impl Planner {
-    /// The candidates of a search, and what a scan must be expected to change there; `None` without any.
+    /// The candidates of a search, and what a scan must be expected to change there; `None` if there is none.
     pub(crate) fn searched(
         &mut self,
         map: &CoverageMap,

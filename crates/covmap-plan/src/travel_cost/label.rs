@@ -3,11 +3,11 @@
 //! A way of a straight and b diagonal steps has the length a + b·√2. As a whole number it is
 //! a·P + b·Q with Q/P a convergent of √2. Two different ways of less than P steps differ by
 //! at least 1/(2.83·P) cells in length, and Q/P is nearer to √2 than 1/(2.83·P²), so whole
-//! numbers compare as lengths do: equal ones are equal and no others. P is more than the
+//! numbers compare as lengths do: only equal lengths are equal numbers. P exceeds the number of
 //! cells of the largest grid.
 
-/// The length of a shortest way, so far, in multiples of 256; and below that the set of steps
-/// that ways of this length end with.
+/// The length of the shortest way known so far, in multiples of 256; the low eight bits are the set of
+/// steps that ways of this length end with.
 pub(super) type Label = u64;
 
 /// No way is known.
@@ -26,8 +26,8 @@ pub(super) fn of_step(step: usize) -> Label {
     if step.is_multiple_of(2) { STRAIGHT } else { DIAGONAL }
 }
 
-/// Offers a cell a way of some length that ends with a step. Returns whether it is better
-/// than what was known, or as good and new.
+/// Offers a cell a way of some length that ends with a step. Returns whether the way is shorter than
+/// the known ones, or as short and new.
 #[inline]
 pub(super) fn improve(label: &mut Label, length: Label, step: usize) -> bool {
     let bit = 1 << step;
@@ -48,7 +48,7 @@ pub(super) fn length(label: Label) -> u64 {
     label >> 8
 }
 
-/// Whether a label's length is that of another and a step's.
+/// Whether the length of a label is the length of another label plus that of a step.
 pub(super) fn is_sum(label: Label, before: Label, step: Label) -> bool {
     before != UNREACHED && length(label) == length(before + step)
 }

@@ -1,4 +1,4 @@
-//! Dijkstra's algorithm as in the books, cell by cell: what the fast one is tested against.
+//! Dijkstra's algorithm as in textbooks, cell by cell: the reference in tests of the fast one.
 
 use super::travel_costs;
 use covmap::{Cell, Grid, STEPS, Steps};
@@ -29,7 +29,7 @@ impl Way {
     }
 }
 
-/// The shortest ways; of equally short ones that from the cell that was done first.
+/// The shortest ways; of equally short ways the one from the cell that was done first.
 fn dijkstra(steps: &Steps, source: Cell) -> Vec<Option<Way>> {
     let grid = *steps.grid();
     let mut ways: Vec<Option<Way>> = vec![None; grid.len()];

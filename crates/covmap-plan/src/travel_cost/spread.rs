@@ -1,4 +1,4 @@
-//! Filling a grid with the lengths of shortest ways.
+//! Fills a grid with the lengths of shortest ways.
 
 use super::label::{self, Label, UNREACHED};
 use super::pruning::{OPEN, onward, steps_in};
@@ -8,21 +8,20 @@ use std::collections::BinaryHeap;
 
 /// Ways that spread over a grid.
 ///
-/// Nothing is tried cell by cell: a straight way runs on until it is blocked, a diagonal one
-/// likewise and sends straight ones off to both sides, and only where an obstacle ends beside
-/// a way new ones begin. Those wait until all shorter ones are done. A way ends where another
-/// was no longer, so what is left in the end are the shortest lengths, in whatever order the
-/// ways ran.
+/// Ways do not spread cell by cell. A straight way runs on until it is blocked; so does a diagonal way,
+/// and sends straight ways off to both sides. New ways begin only where an obstacle ends beside a way,
+/// and wait until all shorter ways are done. A way ends in a cell that another way of at most its length
+/// has reached, so the labels are the shortest lengths in the end, in whatever order the ways ran.
 pub(super) struct Spread<'a> {
     steps: &'a Steps,
     masks: &'a [u16],
-    /// From a cell to its neighbours in row-major order.
+    /// Offsets from a cell's row-major index to those of its neighbours.
     offsets: [isize; 8],
     labels: Vec<Label>,
     turns: BinaryHeap<Reverse<Turn>>,
 }
 
-/// Steps that wait in a cell: the length of the way to it, the cell, the steps.
+/// Steps that wait in a cell: the length of the way to the cell, the cell, the steps.
 type Turn = (Label, u32, u8);
 
 impl<'a> Spread<'a> {
@@ -83,7 +82,7 @@ impl<'a> Spread<'a> {
         }
     }
 
-    /// Lets those steps wait that go on from where a step has led, but for those `tried` at once.
+    /// Makes the steps wait that go on after a step, except those `tried` at once.
     #[inline]
     fn turn(&mut self, at: usize, length: Label, step: usize, tried: u8) {
         let mask = self.masks[at];

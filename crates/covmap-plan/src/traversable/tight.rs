@@ -1,18 +1,18 @@
-//! Paths pulled tight: straight lines in place of steps from cell to cell, wherever there is room.
+//! Paths pulled tight: straight lines instead of steps from cell to cell, wherever there is room.
 
 use super::{Traversable, distance_from_step};
 use covmap::{Cell, step_between};
 use nalgebra::Point2;
 
 impl Traversable {
-    /// The corners of a path that begins in the cell `from`: where the robot can drive straight past
-    /// some of its cells, they are left out.
+    /// The corners of a path that begins in the cell `from`: without the cells that the robot can drive
+    /// straight past.
     ///
-    /// Choice: a straight line may be driven if the robot can stand on every cell that its centre
+    /// Choice: the robot may drive a straight line if it can stand on every cell that its centre
     /// passes, no step between these was tried in vain, and no known cell that blocks has its centre
-    /// nearer to the line than the robot's radius and a cell's side. So lines are for open space; near
-    /// walls, where the body may touch what the map does not have, it goes from cell to cell, and after
-    /// a bump is a step away from where it can plan again.
+    /// nearer to the line than the robot's radius plus a cell's side. So lines are for open space. Near
+    /// walls, where the body may touch an obstacle that is not in the map, the robot drives from cell to
+    /// cell, and after a bump it is one step away from a place where it can plan again.
     pub(crate) fn pulled_tight(&self, from: Cell, path: &[Cell]) -> Vec<Cell> {
         let (mut corners, mut corner, mut before) = (Vec::new(), from, None);
         for cell in path {
@@ -38,7 +38,7 @@ impl Traversable {
         line.iter().all(can_stand) && line.windows(2).all(may_step) && self.has_room(from, to)
     }
 
-    /// Whether nothing that is known to block is nearer to a line than the radius and a cell.
+    /// Whether no known blocking cell is nearer to a line than the radius plus a cell.
     fn has_room(&self, from: Cell, to: Cell) -> bool {
         let (reach, way) = (self.reach + 1, (to.x - from.x, to.y - from.y));
         let span = |a: i32, b: i32| a.min(b) - reach..=a.max(b) + reach;
@@ -50,8 +50,8 @@ impl Traversable {
         !span(from.y, to.y).any(|y| span(from.x, to.x).any(|x| blocks(x, y)))
     }
 
-    /// The step that the robot was taking on its way from the centre of one cell straight to that of
-    /// another when it got no farther than a place \[m\].
+    /// The step that the robot was taking when it got no farther than a place \[m\], on its way straight
+    /// from the centre of one cell to that of another.
     pub(crate) fn step_at(&self, from: Cell, to: Cell, at: Point2<f64>) -> (Cell, Cell) {
         let (begin, end) = (self.grid.center(from), self.grid.center(to));
         let along = |point: Point2<f64>| (point - begin).dot(&(end - begin));
@@ -65,8 +65,8 @@ impl Traversable {
     }
 }
 
-/// The cells that a straight line passes from the centre of one cell to that of another, both among
-/// them: one in each column, or in each row if that are more. Each is a neighbour of the one before.
+/// The cells that a straight line passes from the centre of one cell to that of another, including
+/// both: one in each column or in each row, whichever are more. Each is a neighbour of the cell before.
 fn passed_between(from: Cell, to: Cell) -> Vec<Cell> {
     let (dx, dy) = (to.x - from.x, to.y - from.y);
     let steps = dx.abs().max(dy.abs());
@@ -79,7 +79,7 @@ mod tests {
     use super::*;
     use covmap::Grid;
 
-    /// A floor of which `#` blocks, and `!` is free but was bumped at by a step from the left.
+    /// A floor where `#` blocks, and `!` is free but the robot bumped at it by a step from the left.
     fn floor(rows: [&str; 5], radius: f64) -> Traversable {
         let grid = Grid::new(Point2::origin(), 1.0, rows[0].len(), 5).unwrap();
         let mut traversable = Traversable::new(grid, radius);
@@ -112,7 +112,7 @@ mod tests {
 
     #[test]
     fn beside_what_blocks_it_goes_from_cell_to_cell() {
-        // (4, 0) is 1.2 cells from the line to (6, 2) at its nearest, 1.4 are asked for.
+        // (4, 0) is at least 1.2 cells from the line to (6, 2); the line needs 1.4 cells.
         let post = [".......", ".......", ".......", ".......", "....#.."];
         let found = corners(post, &WAY);
         assert!(found.len() > 1 && found.last() == Some(&Cell::new(6, 2)), "{found:?}");

@@ -1,4 +1,4 @@
-//! Who is chosen, beside what the literal equations promise.
+//! The chosen view-point against the promises of the literal equations.
 
 use crate::{Setting, in_sight, setting_of, some_scans};
 use covmap::Cell;
@@ -9,7 +9,7 @@ use covmap_sonar::SonarRing;
 use nalgebra::Point2;
 use proptest::prelude::*;
 
-/// Compares who is chosen, or that nobody is, with what the literal equations promise.
+/// Compares the chosen view-point, or that there is none, with the promises of the literal equations.
 fn check_promise(s: &mut Setting, from: Cell, cell: f64, least: f64) -> Result<(), TestCaseError> {
     const OFF: f64 = 1e-3;
     let promise = |s: &Setting, at: Cell| {

@@ -1,11 +1,11 @@
-//! What becomes of every cell: the first word that applies.
+//! The status of each cell: the first that applies.
 
 use super::corridor::{Corridor, plain, two_bins};
 use covmap_plan::CellStatus::{Exhausted, NotSeen, Open, Outside, Resolved, Unreachable};
 use covmap_plan::{PlannerParameters, StallRule, Strategy};
 
-/// A robot that looks 2 m to the right along twelve cells, of which the last two lie outside. It
-/// does not know the cells 3, 5, 10 and 11.
+/// A robot that looks 2 m to the right along twelve cells; the last two lie outside. It does not know
+/// the cells 3, 5, 10 and 11.
 fn corridor() -> Corridor {
     let (model, parameters) = (two_bins(2.0), plain(Strategy::Cl));
     let mut corridor = Corridor::build(12, &[0.0], &model, &parameters, 0.3, |x| x >= 10);
@@ -18,15 +18,15 @@ fn every_cell_has_one_word() {
     let mut corridor = corridor();
     let statuses: Vec<_> = (0..12).map(|x| corridor.status(0, x)).collect();
     // The robot gets as far as cell 2, from where it sees 3 and 4. Cell 5 may come into sight later;
-    // what is resolved is so from anywhere.
+    // a resolved cell is resolved from anywhere.
     let mut expected = [Resolved; 12];
     (expected[3], expected[5]) = (Open, NotSeen);
     (expected[10], expected[11]) = (Outside, Outside);
     assert_eq!(statuses, expected);
-    // When nothing is open, or behind a wall, it does not.
+    // When no cell is open, or behind a wall, cell 5 does not.
     corridor.know(3, &[0.001, 0.999]);
     assert_eq!(corridor.status(0, 5), Unreachable);
-    // What is known outside is outside none the less.
+    // A known cell outside is outside none the less.
     corridor.know(10, &[0.999, 0.001]);
     assert_eq!(corridor.status(0, 10), Outside);
 }
@@ -51,7 +51,7 @@ fn a_cell_that_is_given_up_is_exhausted_also_out_of_sight() {
     assert_eq!(corridor.status(0, 3), Exhausted);
     corridor.know(1, &[0.01, 0.99]);
     assert_eq!(corridor.status(0, 3), Exhausted);
-    // And when it is known after all, it is resolved.
+    // When the cell is known after all, it is resolved.
     corridor.know(3, &[0.999, 0.001]);
     assert_eq!(corridor.status(0, 3), Resolved);
 }
@@ -61,7 +61,7 @@ fn what_is_hidden_behind_a_wall_is_out_of_reach() {
     let mut corridor = corridor();
     corridor.know(1, &[0.01, 0.99]);
     assert_eq!([1, 3].map(|x| corridor.status(0, x)), [Resolved, Unreachable]);
-    // From beyond the wall it is open.
+    // From beyond the wall the cell is open.
     assert_eq!(corridor.status(2, 3), Open);
 }
 
@@ -70,7 +70,7 @@ fn open_cells_are_those_that_are_known_and_not_finished() {
     let mut corridor = corridor();
     let open = |corridor: &Corridor| corridor.planner.open_cells(&corridor.map);
     assert_eq!(open(&corridor), 0);
-    // One is not resolved; then it is given up, and there is another one.
+    // One cell is not resolved; then it is given up, and there is another one.
     corridor.look(2, 3, 0.5);
     assert_eq!(open(&corridor), 1);
     (0..5).for_each(|_| corridor.look_in_vain(2));
@@ -100,7 +100,7 @@ fn what_lies_outside_is_no_reason() {
 
 #[test]
 fn a_cell_in_sight_from_too_far_away_is_neither_open_nor_exhausted() {
-    // The robot gets no nearer than 4 m to cell 7, of which a stall from 6 m wants 3 m.
+    // The robot gets no nearer than 4 m to cell 7; after a stall from 6 m the limit is 3 m.
     let mut parameters = plain(Strategy::Cl);
     parameters.stall_rule = StallRule::Banded { first: 6.0, closest: 1.0 };
     let mut corridor = Corridor::new(8, &[0.0], &two_bins(6.0), &parameters);

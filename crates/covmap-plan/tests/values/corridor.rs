@@ -1,4 +1,4 @@
-//! A corridor that is one cell wide, and a planner that is told of it cell by cell.
+//! A corridor that is one cell wide, and a planner that gets to know it cell by cell.
 
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
 use covmap_model::{
@@ -11,7 +11,7 @@ use covmap_plan::{
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use nalgebra::{Isometry2, Point2};
 
-/// Somewhere outside of the grid: a body there is over no cell.
+/// A place outside of the grid: a body there is over no cell.
 const NOWHERE: Point2<f64> = Point2::new(-1e3, -1e3);
 
 /// A robot in a corridor of cells of 1 m. Its sensors are rays from its centre.
@@ -22,7 +22,7 @@ pub(crate) struct Corridor {
     beams: usize,
 }
 
-/// Two bins, and no echo as far as `range` [m].
+/// A model with two bins that takes no echo as free space up to `range` [m].
 pub(crate) fn two_bins(range: f64) -> ModelParameters {
     ModelParameters {
         bins: 2,
@@ -39,8 +39,8 @@ pub(crate) fn two_bins(range: f64) -> ModelParameters {
     }
 }
 
-/// Every view-point may be measured from again, no passage is tried, the first stall exhausts a
-/// cell, and ε = .1.
+/// Parameters with which the robot may measure from every view-point again and tries no passage, the
+/// first stall exhausts a cell, and ε = .1.
 pub(crate) fn plain(strategy: Strategy) -> PlannerParameters {
     PlannerParameters {
         strategy,
@@ -56,7 +56,7 @@ pub(crate) fn plain(strategy: Strategy) -> PlannerParameters {
 }
 
 impl Corridor {
-    /// Nothing is known of the `cells`. `directions` are those of the rays [degrees].
+    /// A corridor with `cells` unknown cells; `directions` are those of the rays [degrees].
     pub(crate) fn new(
         cells: usize,
         directions: &[f64],
@@ -66,7 +66,7 @@ impl Corridor {
         Self::build(cells, directions, model, parameters, 0.3, |_| false)
     }
 
-    /// With a robot of this radius [m], and columns outside of the environment.
+    /// The same with a robot of this radius [m], and with columns outside of the environment.
     pub(crate) fn build(
         cells: usize,
         directions: &[f64],
@@ -90,7 +90,7 @@ impl Corridor {
         Self { map, planner, beams: directions.len() }
     }
 
-    /// Gives a cell a posterior; returns the change, which nobody is told of yet.
+    /// Gives a cell a posterior; returns the change, which the planner does not know of yet.
     fn set(&mut self, x: i32, posterior: &[f64]) -> Option<Change> {
         let mut before = vec![0.0; posterior.len()];
         self.map.read_posterior(Cell::new(x, 0), &mut before);
@@ -98,13 +98,13 @@ impl Corridor {
         self.map.multiply(Cell::new(x, 0), &evidence)
     }
 
-    /// A cell has this posterior, and the planner knows.
+    /// Gives a cell this posterior, and tells the planner.
     pub(crate) fn know(&mut self, x: i32, posterior: &[f64]) {
         let change = self.set(x, posterior);
         self.planner.body_moved(&self.map, NOWHERE, NOWHERE, change.as_slice());
     }
 
-    /// All cells but some are free for sure.
+    /// Makes all cells but the `unknown` ones free for sure.
     pub(crate) fn free_but(&mut self, unknown: &[i32]) {
         let cells: Vec<Cell> = self.map.grid().cells().collect();
         let sure = |bins| (0..bins).map(|bin| if bin == 0 { 1.0 } else { 1e-4 }).collect();
@@ -114,7 +114,7 @@ impl Corridor {
         }
     }
 
-    /// A scan from a cell, after which another one has the entropy `after` [nats] (of two bins)
+    /// Takes a scan from a cell, after which another cell has the entropy `after` [nats] (of two bins)
     /// and is rather free.
     pub(crate) fn look(&mut self, from: i32, at: i32, after: f64) {
         let p = likelier(after);
@@ -122,7 +122,7 @@ impl Corridor {
         self.scan(from, change.as_slice());
     }
 
-    /// A scan from a cell that says nothing.
+    /// Takes a scan from a cell that changes nothing.
     pub(crate) fn look_in_vain(&mut self, from: i32) {
         self.scan(from, &[]);
     }
@@ -131,7 +131,7 @@ impl Corridor {
         self.observe(from, &vec![Range::Missing; self.beams], changes);
     }
 
-    /// A scan from a cell, with these readings and changes.
+    /// Takes a scan from a cell with these readings and changes.
     pub(crate) fn observe(&mut self, from: i32, ranges: &[Range], changes: &[Change]) {
         let at = self.map.grid().center(Cell::new(from, 0));
         let pose = Isometry2::new(at.coords, 0.0);
@@ -149,7 +149,7 @@ impl Corridor {
         self.planner.choose(&self.map, Cell::new(from, 0))
     }
 
-    /// The column that is chosen; −1 if none is.
+    /// The chosen column; −1 if none is chosen.
     pub(crate) fn target(&mut self, from: i32) -> i32 {
         self.choose(from).map_or(-1, |decision| decision.target.x)
     }
@@ -159,7 +159,7 @@ impl Corridor {
         *certificate.get(Cell::new(x, 0)).unwrap()
     }
 
-    /// How many scans were counted for a cell.
+    /// The number of scans counted for a cell.
     pub(crate) fn counted(&self, x: i32) -> u32 {
         *self.planner.counted_scans().get(Cell::new(x, 0)).unwrap()
     }

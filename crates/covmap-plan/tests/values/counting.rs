@@ -4,7 +4,7 @@ use super::corridor::{Corridor, plain, two_bins};
 use covmap_plan::{CellStatus, PlannerParameters, StallRule, Strategy};
 use covmap_sonar::Range;
 
-/// A robot that looks 4 m to the right along six cells, of which all are free.
+/// A robot that looks 4 m to the right along six free cells.
 fn corridor(strategy: Strategy, change: impl Fn(&mut PlannerParameters)) -> Corridor {
     let mut parameters = plain(strategy);
     change(&mut parameters);
@@ -17,7 +17,7 @@ fn count(times: f64, half_distance: Option<f64>) -> Strategy {
     Strategy::Count { times, half_distance }
 }
 
-/// What became of the cells 1 … 4 m from where the robot looks.
+/// The statuses of the cells 1 … 4 m from where the robot looks.
 fn statuses(corridor: &mut Corridor) -> [CellStatus; 4] {
     [2, 3, 4, 5].map(|x| corridor.status(0, x))
 }
@@ -49,7 +49,7 @@ fn a_longer_beam_counts_less() {
 
 #[test]
 fn five_scans_in_a_row_that_miss_a_cell_give_it_up() {
-    // Whatever the rule for entropies says.
+    // The rule for entropies does not matter.
     let banded = StallRule::Banded { first: 4.0, closest: 0.5 };
     let mut corridor = corridor(count(3.0, None), |p| p.stall_rule = banded);
     let miss = |corridor: &mut Corridor, times: usize| {
@@ -84,6 +84,6 @@ fn a_cell_that_was_scanned_by_chance_is_no_reason_any_more() {
     corridor.planner.stand_on(covmap::Cell::new(3, 0));
     assert_eq!(corridor.candidates(0), [0, 1, 2, 3, 4]);
     corridor.observe(1, &[Range::Echo(4.0)], &[]);
-    // Of cell 1 nobody knows yet.
+    // Cell 1 was not scanned yet.
     assert_eq!(corridor.candidates(0), [0]);
 }

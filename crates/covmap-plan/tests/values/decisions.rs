@@ -1,7 +1,7 @@
 //! Eq. (12), (15) and (16), ties, and spent view-points.
 //!
 //! A robot in a corridor of eleven cells sees its neighbours to the left and to the right. It does
-//! not know the cells 2 and 8, beyond which it cannot drive.
+//! not know the cells 2 and 8, and cannot drive beyond them.
 
 use super::corridor::{Corridor, plain, two_bins};
 use super::{all_close, close};
@@ -24,7 +24,7 @@ fn candidates_hold_an_open_cell_in_sight() {
     let mut corridor = corridor(Strategy::Cl);
     assert_eq!(corridor.candidates(5), [3, 7]);
     corridor.know(8, &[0.999, 0.001]);
-    // Cell 8 is free: the robot could go on, but all is known there.
+    // Cell 8 is free: the robot could go on, but all cells there are known.
     assert_eq!(corridor.candidates(5), [3]);
     corridor.know(10, &[0.8, 0.2]);
     assert_eq!(corridor.candidates(5), [3, 9]);
@@ -46,7 +46,7 @@ fn closest_location_minimises_the_travel_cost() {
         assert_eq!(decision.negative_gains, 0);
         let costs: Vec<f64> = decision.best.iter().map(|record| record.cost).collect();
         assert_eq!(costs, [1.0, 3.0]);
-        // Where it is costs nothing.
+        // To stay costs nothing.
         let stay = corridor.choose(7).unwrap();
         assert_eq!((stay.target, stay.path.len(), stay.best[0].cost), (Cell::new(7, 0), 0, 0.0));
     }
@@ -113,7 +113,7 @@ fn a_turn_costs_as_much_as_its_radians_say() {
         corridor.planner.drove(Cell::new(4, 0), Cell::new(5, 0));
         all_close(&costs(&mut corridor), &[2.0 + of_turns, 2.0], 1e-12);
         assert_eq!(corridor.target(5), if of_turns > 0.0 { 7 } else { 3 }, "{strategy}");
-        // To stay where it is needs none either.
+        // To stay needs no turn either.
         assert_eq!(corridor.choose(7).unwrap().best[0].cost, 0.0);
     }
 }
@@ -175,7 +175,7 @@ fn only_what_the_robot_may_stand_on_must_be_explored_if_it_is_said_so() {
     for (scope, candidates) in [(Scope::Observable, vec![3, 7]), (Scope::Reachable, vec![3])] {
         let parameters = PlannerParameters { scope, ..plain(Strategy::Cl) };
         let mut corridor = corridor_with(&parameters);
-        // A wall, which is not quite sure.
+        // A wall that is not quite sure.
         corridor.know(8, &[0.1, 0.9]);
         assert_eq!(corridor.candidates(5), candidates, "{scope:?}");
     }

@@ -1,5 +1,5 @@
-//! The rules of the planner, one by one, in a corridor that is one cell wide, and values worked out
-//! by hand, with their derivation.
+//! The rules of the planner, one by one, in a corridor that is one cell wide, with values worked out
+//! by hand and their derivation.
 #![allow(clippy::float_cmp, clippy::unwrap_used, reason = "tests")]
 
 mod certificates;

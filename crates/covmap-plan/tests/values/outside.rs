@@ -60,7 +60,7 @@ fn a_strategy_sees_every_candidate_and_may_take_any_or_none() {
     assert!(corridor.planner.choose_by(&corridor.map, from, &mut none).is_none());
 }
 
-/// The longest way in cells, which a strategy can ask for.
+/// A strategy that asks for the longest way in cells.
 struct LongestWay;
 
 impl Scoring for LongestWay {

@@ -1,7 +1,7 @@
-//! Passages that look blocked, and are tried when nothing else is left.
+//! Passages that look blocked; the robot tries them when nothing else is left.
 //!
-//! A corridor with cells that look covered; beyond them rooms, at the ends of which a cell is
-//! unknown. The robot sees its neighbours.
+//! A corridor with cells that look covered. Beyond them are rooms that end with an unknown cell. The
+//! robot sees its neighbours.
 
 use super::corridor::{Corridor, plain, two_bins};
 use covmap::Cell;
@@ -27,7 +27,7 @@ fn a_passage_is_tried_up_to_its_length() {
     // Two covered cells between the robot and a room.
     let tried = |length| passage(&mut corridor(12, length, &[11], &[3, 4]), 0);
     assert_eq!([2.0, 1.99].map(tried), [Some(vec![3, 4]), None]);
-    // Until somebody bumped into it.
+    // The robot does not try it again after a bump.
     let mut corridor = corridor(12, 2.0, &[11], &[3, 4]);
     corridor.planner.bump(Cell::new(3, 0), Cell::new(4, 0), nalgebra::Point2::origin());
     assert_eq!(passage(&mut corridor, 0), None);

@@ -1,6 +1,6 @@
-//! When a cell is given up: .001, five times, and the distance bands.
+//! The stall rule: .001, five times, and the distance bands.
 //!
-//! A robot in a corridor looks to the right, 6 m far, at the cell 7; all before it is free.
+//! A robot in a corridor looks to the right, up to 6 m, at cell 7; all cells before it are free.
 
 use super::corridor::{Corridor, plain, two_bins};
 use covmap::Cell;
@@ -8,7 +8,7 @@ use covmap_plan::{CellStatus, StallRule, Strategy};
 
 /// The cell that is looked at.
 const CELL: i32 = 7;
-/// All view-points from which it is in sight, 6 m to 1 m from it.
+/// All view-points from which that cell is in sight, 6 m to 1 m away.
 const ALL: [i32; 6] = [1, 2, 3, 4, 5, 6];
 
 fn corridor(stall_rule: StallRule) -> Corridor {
@@ -22,7 +22,8 @@ fn banded() -> Corridor {
     corridor(StallRule::Banded { first: 6.0, closest: 1.0 })
 }
 
-/// The candidates after a first look from 6 m away that finds the entropy .6, and then these.
+/// The candidates after a first scan from 6 m away, with the entropy .6 after it, and one scan for each
+/// of `entropies`.
 fn after(mut corridor: Corridor, entropies: &[f64]) -> Vec<i32> {
     corridor.look(1, CELL, 0.6);
     entropies.iter().for_each(|after| corridor.look(1, CELL, *after));
@@ -80,7 +81,7 @@ fn a_band_as_near_as_the_closest_distance_is_still_one() {
 
 #[test]
 fn no_band_goes_beyond_the_usable_range() {
-    // A wall 4 m from cell 0 is seen from there, and what is behind it, 5 m away, is no reason.
+    // A wall 4 m from cell 0 is in sight from there; the cell behind it, 5 m away, is no reason.
     let mut model = two_bins(4.0);
     model = model.with_product(|product| {
         (product.behind, product.no_echo.range) = (1.0, 1.0);
@@ -99,7 +100,7 @@ fn what_a_wall_hides_is_no_reason() {
     let mut corridor = banded();
     corridor.know(3, &[0.01, 0.99]);
     assert_eq!(corridor.candidates(0), [0; 0]);
-    // The robot can drive over the cell that looks like a wall, having stood on it.
+    // The robot can drive over the cell that looks like a wall, as it stood there.
     corridor.planner.stand_on(Cell::new(3, 0));
     assert_eq!(corridor.candidates(0), [3, 4, 5, 6]);
 }
@@ -111,7 +112,7 @@ fn the_next_band_is_half_of_the_nearest_of_the_stalled_scans() {
     [1, 3, 2, 1, 1].into_iter().for_each(|from| corridor.look_in_vain(from));
     // From 6, 4, 5, 6 and 6 m: R = 2 m.
     assert_eq!(corridor.candidates(0), [5, 6]);
-    // A scan that told something ends the stall, and with it how near that was.
+    // A scan that told something ends the stall, and resets its nearest distance.
     let mut corridor = banded();
     corridor.look(1, CELL, 0.6);
     corridor.look_in_vain(5);
@@ -142,10 +143,10 @@ fn a_fall_of_less_than_a_thousandth_is_a_stall() {
 
 #[test]
 fn what_counts_is_the_lowest_entropy_of_the_band() {
-    // Five falls that stay above .6, which was reached before.
+    // Five falls that stay above .6, the entropy reached before.
     assert_eq!(after(banded(), &[0.65, 0.64, 0.63, 0.62, 0.61]), [4, 5, 6]);
     assert_eq!(after(banded(), &[0.65, 0.64, 0.63, 0.62, 0.59]), ALL);
-    // The next band begins anew: .65 is its lowest at first.
+    // The next band begins anew: its lowest entropy is .65 at first.
     let mut corridor = banded();
     corridor.look(1, CELL, 0.6);
     (0..5).for_each(|_| corridor.look_in_vain(1));
@@ -164,7 +165,7 @@ fn without_bands_the_first_stall_exhausts_a_cell() {
 #[test]
 fn the_literal_rule_looks_at_the_change_and_not_at_the_lowest() {
     let literal = || corridor(StallRule::Literal);
-    // Changes of .01 up or down are none the less changes.
+    // Changes of .01 are changes, up or down.
     assert_eq!(after(literal(), &[0.65, 0.64, 0.63, 0.62, 0.61, 0.65, 0.64]), ALL);
     assert_eq!(after(literal(), &[0.61, 0.62, 0.63, 0.64, 0.65, 0.66]), ALL);
     // Changes of .0005.
@@ -194,15 +195,15 @@ fn a_scan_counts_for_what_was_in_sight_when_its_place_was_chosen() {
         assert_eq!(corridor.target(0), 1);
         corridor
     };
-    // On the way something turns up between the view-point and the cell.
+    // On the way the robot finds a wall between the view-point and the cell.
     let mut corridor = chosen();
     corridor.know(3, &wall);
     corridor.look_in_vain(1);
     assert_eq!(corridor.counted(CELL), 1);
-    // The next scan from there is judged by what is in sight now.
+    // The next scan from there counts for the cells in sight now.
     corridor.look_in_vain(1);
     assert_eq!(corridor.counted(CELL), 1);
-    // A scan on the way changes nothing about that; one from elsewhere counts for its own sight.
+    // A scan on the way does not change that; a scan from elsewhere counts for the cells in its own sight.
     let mut corridor = chosen();
     corridor.look_in_vain(0);
     assert_eq!(corridor.counted(CELL), 0);
@@ -210,7 +211,7 @@ fn a_scan_counts_for_what_was_in_sight_when_its_place_was_chosen() {
     corridor.know(3, &wall);
     corridor.look_in_vain(1);
     assert_eq!(corridor.counted(CELL), 2);
-    // After a bump nothing is chosen.
+    // After a bump no view-point is chosen.
     let mut corridor = chosen();
     corridor.planner.bump(Cell::new(1, 0), Cell::new(2, 0), nalgebra::Point2::origin());
     corridor.know(3, &wall);

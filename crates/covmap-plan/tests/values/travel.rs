@@ -1,4 +1,4 @@
-//! Where the robot can stand, and how far it is.
+//! Traversable view-points and their travel costs.
 
 use super::close;
 use super::corridor::{Corridor, plain, two_bins};
@@ -30,8 +30,8 @@ fn of_two_shortest_ways_the_one_whose_last_step_comes_from_the_nearest_cell() {
     assert_eq!(path(0, 0), []);
 }
 
-/// The candidates of a robot that drives from cell 0 to where it sees the unknown cell 5, over
-/// cell 2, of which the most likely bin of eleven is given.
+/// The candidates of a robot that drives from cell 0 over cell 2 to where it sees the unknown cell 5;
+/// `bin` is the most likely of the eleven bins of cell 2.
 fn candidates(change: impl Fn(&mut PlannerParameters), bin: usize, radius: f64) -> Vec<i32> {
     corridor(change, bin, radius).candidates(0)
 }
@@ -88,7 +88,7 @@ fn where_the_robot_stood_it_can_stand_again() {
         let mut corridor = corridor(|p| p.body_evidence = body_evidence, 10, 0.3);
         assert_eq!(corridor.candidates(0), [0; 0]);
         corridor.planner.stand_on(Cell::new(2, 0));
-        // Whatever the map says of that cell now:
+        // The map may say anything of that cell now:
         corridor
             .know(2, &[0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.001, 0.99, 0.001]);
         assert_eq!(corridor.candidates(0), expected, "{body_evidence:?}");
@@ -101,7 +101,7 @@ fn an_unknown_cell_is_open_once_the_body_was_over_its_centre() {
         let parameters = PlannerParameters { body_evidence, ..plain(Strategy::Cl) };
         let mut corridor = Corridor::new(6, &[0.0], &two_bins(1.0), &parameters);
         corridor.free_but(&[2, 5]);
-        // Cell 2 is unknown and shuts off what is beyond.
+        // Cell 2 is unknown and shuts off the cells beyond.
         assert_eq!(corridor.candidates(0), [1]);
         let center = corridor.map.grid().center(Cell::new(2, 0));
         corridor.planner.body_moved(&corridor.map, center, center, &[]);
@@ -119,7 +119,7 @@ fn a_cell_that_was_bumped_into_is_blocked_for_good() {
     assert_eq!(corridor.candidates(0), [0; 0]);
 }
 
-/// Which of the cells 0 … 3 a robot reaches from a cell, if cell 2 looks like a wall.
+/// Whether a robot reaches each of the cells 0 … 3 from a cell, if cell 2 looks like a wall.
 fn reached(corridor: &Corridor, from: i32) -> [bool; 4] {
     let reach = corridor.planner.reach(Cell::new(from, 0));
     [0, 1, 2, 3].map(|x| *reach.get(Cell::new(x, 0)).unwrap() == Reach::Reached)

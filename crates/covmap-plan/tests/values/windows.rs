@@ -1,4 +1,4 @@
-//! IG_WIN: a local window until it has been explored, and no return.
+//! IG_WIN: a local window until it is explored, and no return.
 //!
 //! A robot in a corridor of sixteen cells sees its neighbours to both sides. Cells that are not
 //! resolved lie here and there, and it can drive over all of them.
@@ -6,7 +6,7 @@
 use super::corridor::{Corridor, plain, two_bins};
 use covmap_plan::Strategy;
 
-/// Free with this probability: of .6 there is more to learn than of .9.
+/// A corridor with `open` cells that are free with these probabilities: .6 leaves more to learn than .9.
 fn corridor(strategy: Strategy, open: &[(i32, f64)]) -> Corridor {
     let mut corridor = Corridor::new(16, &[0.0, 180.0], &two_bins(1.0), &plain(strategy));
     corridor.free_but(&[]);
@@ -30,13 +30,13 @@ fn the_gain_is_sought_within_the_window_first() {
     let mut windowed = corridor(WINDOW, &open);
     let decision = windowed.choose(2).unwrap();
     assert_eq!((decision.target.x, decision.candidates), (2, 2));
-    // It stays where it was opened, wherever the robot is.
+    // The window stays where it was opened, wherever the robot is.
     assert_eq!(windowed.target(7), 2);
 }
 
 #[test]
 fn a_window_is_a_circle_with_its_edge() {
-    // Cell 5 lies on the edge: candidates are 4 and 6, of which 6 is outside.
+    // Cell 5 lies on the edge: of the candidates 4 and 6, 6 is outside.
     let decision = corridor(WINDOW, &[(5, 0.9), (9, 0.6)]).choose(2).unwrap();
     assert_eq!((decision.target.x, decision.candidates), (4, 1));
 }
@@ -67,7 +67,7 @@ fn there_is_no_need_to_return_until_all_else_is_done() {
     assert_eq!(corridor.target(2), 2);
     resolve(&mut corridor, 3);
     assert_eq!(corridor.target(2), 8);
-    // Cell 3 is in doubt again: it is no reason now, though there is much to learn.
+    // Cell 3 is in doubt again: it is no reason now, although there is much to learn.
     corridor.know(3, &[0.6, 0.4]);
     assert_eq!(corridor.candidates(8), [8, 10]);
     assert_eq!(corridor.target(8), 8);

@@ -1,4 +1,4 @@
-//! The straight faces of solids, and what a ray meets of them.
+//! The straight faces of solids, and their intersections with rays.
 
 use crate::faces::Bounds;
 use crate::scenario::Surface;
@@ -10,41 +10,41 @@ const BEHIND: f64 = 1e-9;
 /// One straight side of a solid, from `a` to `b` with the solid on its left.
 #[derive(Debug, Clone, Copy)]
 pub struct Face {
-    /// Where it begins \[m\].
+    /// Start \[m\].
     pub a: Point2<f64>,
-    /// Where it ends \[m\].
+    /// End \[m\].
     pub b: Point2<f64>,
-    /// Unit vector from a to b.
+    /// Unit vector from `a` to `b`.
     pub along: Vector2<f64>,
-    /// From a to b \[m\].
+    /// Length \[m\].
     pub length: f64,
-    /// What it is made of.
+    /// Surface of the solid.
     pub surface: Surface,
 }
 
 impl Face {
-    /// The face from `a` to `b`, which differ.
+    /// Makes the face from `a` to `b`, which must differ.
     pub fn new(a: Point2<f64>, b: Point2<f64>, surface: Surface) -> Self {
         let length = (b - a).norm();
         Self { a, b, along: (b - a) / length, length, surface }
     }
 
-    /// Unit normal into the free space, to the right of a → b.
+    /// Returns the unit normal into the free space, to the right of a → b.
     pub fn normal(&self) -> Vector2<f64> {
         Vector2::new(self.along.y, -self.along.x)
     }
 
-    /// The box around it.
+    /// Returns the face's bounding box.
     pub fn bounds(&self) -> Bounds {
         (self.a.inf(&self.b), self.a.sup(&self.b))
     }
 
-    /// How far a point is before the face's line \[m\]; negative behind it.
+    /// Returns the height of a point above the face's line \[m\]; negative behind the line.
     pub fn height(&self, point: Point2<f64>) -> f64 {
         (point - self.a).dot(&self.normal())
     }
 
-    /// The point of the face that is nearest to a point.
+    /// Returns the point of the face that is nearest to a point.
     pub fn nearest(&self, point: Point2<f64>) -> Point2<f64> {
         let s = (point - self.a).dot(&self.along);
         if s <= 0.0 {
@@ -56,10 +56,10 @@ impl Face {
         }
     }
 
-    /// Where a ray enters the solid through this face \[m\].
+    /// Returns the distance at which a ray enters the solid through this face \[m\].
     ///
-    /// Both ends belong to the face and are judged by the same expression as those of its
-    /// neighbours, so that no ray slips between two faces.
+    /// Both ends belong to the face, and the same expression judges them as the ends of its
+    /// neighbours: no ray slips between two faces.
     pub fn entered_at(&self, origin: Point2<f64>, direction: Vector2<f64>) -> Option<f64> {
         let (to_a, to_b) = (self.a - origin, self.b - origin);
         let (side_a, side_b) = (direction.perp(&to_a), direction.perp(&to_b));

@@ -1,8 +1,8 @@
-//! Which of many boxes lie near a point or along a ray: parry's tree of boxes.
+//! An index of boxes near a point or along a ray: parry's tree of boxes.
 //!
-//! The tree is f32 and only narrows down; whoever asks computes in f64 from the exact
-//! geometry. Its boxes are relative to the world's corner and wider than the truth by more
-//! than f32 can err, so that nothing is lost.
+//! The tree is f32 and only narrows down the search; the caller computes in f64 from the exact
+//! geometry. The tree's boxes are relative to the world's corner, and wider than the true boxes
+//! by more than the rounding of f32: no box is missed.
 
 use nalgebra::{Point2, Vector2};
 use parry2d::bounding_volume::Aabb;
@@ -13,7 +13,7 @@ use std::cell::Cell;
 /// Boxes are widened by this share of the farthest coordinate.
 const WIDENING: f64 = 1e-6;
 
-/// Boxes, to be found by where they are.
+/// A spatial index of boxes.
 #[derive(Debug, Clone)]
 pub struct Index {
     tree: Bvh,
@@ -25,7 +25,7 @@ pub struct Index {
 pub type Bounds = (Point2<f64>, Point2<f64>);
 
 impl Index {
-    /// An index of boxes, which are known by their place in the list.
+    /// Makes an index of boxes; the index names a box by its place in the list.
     pub fn new(origin: Point2<f64>, boxes: &[Bounds]) -> Self {
         let reach = boxes.iter().flat_map(|(low, high)| [low - origin, high - origin]);
         let widening = WIDENING * (1.0 + reach.map(|v| v.amax()).fold(0.0, f64::max));
@@ -38,7 +38,7 @@ impl Index {
         Self { tree, origin, widening }
     }
 
-    /// The members whose boxes meet a box.
+    /// Returns the members whose boxes meet a box.
     pub fn meeting(&self, (low, high): Bounds) -> impl Iterator<Item = usize> + '_ {
         let (low, high) = (low - self.origin, high - self.origin);
         let meets = move |node: &BvhNode| {
@@ -48,8 +48,9 @@ impl Index {
         self.tree.leaves(meets).map(|member| member as usize)
     }
 
-    /// The member with the smallest cost below `limit`, where no cost is below the distance
-    /// of the member's box along a ray.
+    /// Returns the member with the smallest cost below `limit`.
+    ///
+    /// No cost may be below the distance of the member's box along the ray.
     pub fn first_along(
         &self,
         origin: Point2<f64>,
@@ -62,7 +63,7 @@ impl Index {
         let entry = |node: &BvhNode| {
             let near = (double(node.mins()) - start).component_mul(&inverse);
             let far = (double(node.maxs()) - start).component_mul(&inverse);
-            // 0 · ∞ is not a number, which min and max pass over.
+            // 0 · ∞ is NaN, which min and max pass over.
             let enter = near.x.min(far.x).max(near.y.min(far.y)).max(0.0);
             let leave = near.x.max(far.x).min(near.y.max(far.y));
             (enter <= leave).then_some(enter)
@@ -70,8 +71,9 @@ impl Index {
         self.best(limit, entry, cost)
     }
 
-    /// The member with the smallest cost below `limit`, where no cost is below the distance
-    /// of the member's box from a point.
+    /// Returns the member with the smallest cost below `limit`.
+    ///
+    /// No cost may be below the distance of the member's box from the point.
     pub fn nearest_to(
         &self,
         point: Point2<f64>,
@@ -86,7 +88,7 @@ impl Index {
         self.best(limit, distance, cost)
     }
 
-    /// The best in f64; the tree's own order of costs is f32, and is given a little slack.
+    /// Returns the best in f64. The tree's own order of costs is f32, and gets a little slack.
     fn best(
         &self,
         limit: f64,
@@ -105,7 +107,7 @@ impl Index {
             best.set(Some((member as usize, found)));
             Some(lower(found + self.widening))
         };
-        // What was found is in `best`; the tree only walks.
+        // The result is in `best`; the tree only walks.
         let _ = self.tree.find_best(f32::MAX, node_cost, leaf_cost);
         best.get()
     }

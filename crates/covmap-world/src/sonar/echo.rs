@@ -1,8 +1,8 @@
-//! What answers a sonar: the nearest admissible point in its cone.
+//! The echo of a sonar: the nearest admissible point in its cone.
 //!
-//! Rays across the cone find surfaces, and follow mirrors. Rays at the nearest admissible
-//! point of every face, past the ends of faces, and at corners and edges make the result
-//! independent of how many rays there are, but for echoes by way of mirrors.
+//! Rays across the cone find surfaces, and follow mirrors. Rays at the nearest admissible point
+//! of every face, past the ends of faces, and at corners and edges make the result independent of
+//! the number of rays, except for echoes by way of mirrors.
 
 use crate::faces::Face;
 use crate::feature::Kind;
@@ -14,11 +14,11 @@ use nalgebra::{Isometry2, Point2, Vector2};
 
 /// Rays past the end of a face miss it by this angle [rad].
 const PAST: f64 = 1e-7;
-/// What is hit this near before a point is the point itself [m].
+/// A hit this near before a point is the point itself [m].
 const SAME_PLACE: f64 = 1e-7;
 /// Rounding of angles [rad].
 const ROUNDING: f64 = 1e-9;
-/// Narrower cones are lines [rad].
+/// Cones narrower than this are lines [rad].
 const LINE: f64 = 1e-6;
 
 /// One sonar in the world.
@@ -31,12 +31,12 @@ pub(crate) struct Echoes<'a> {
     max_range: f64,
 }
 
-/// Something in the cone that is looked at after the fan of rays.
+/// A target in the cone, checked after the fan of rays.
 #[derive(Clone, Copy)]
 enum Target {
     /// A point that answers if it is visible.
     Point(Point2<f64>),
-    /// The end of a face; what is behind it may answer.
+    /// The end of a face; a surface behind it may answer.
     End(Point2<f64>),
 }
 
@@ -58,7 +58,7 @@ impl<'a> Echoes<'a> {
         }
     }
 
-    /// The shortest path to something that answers \[m\].
+    /// Returns the length of the shortest path to a surface that answers \[m\].
     pub(crate) fn nearest(&self) -> Option<f64> {
         if self.world.is_solid(self.origin) {
             return Some(0.0);
@@ -75,7 +75,8 @@ impl<'a> Echoes<'a> {
         (best <= self.max_range).then_some(best)
     }
 
-    /// The angles from the axis of the rays across the cone: both sides, the axis, evenly.
+    /// Returns the angles from the axis of the rays across the cone: evenly spaced, with the axis
+    /// and both sides.
     fn fan(&self) -> impl Iterator<Item = f64> + use<> {
         let rays = self.physics.cone_rays.min(MOST_RAYS);
         #[allow(clippy::cast_possible_truncation, reason = "at most 500")]
@@ -84,14 +85,14 @@ impl<'a> Echoes<'a> {
         (-side..=side).map(move |k| f64::from(k) * step)
     }
 
-    /// The unit vector at an angle from the axis.
+    /// Returns the unit vector at an angle from the axis.
     fn toward(&self, angle: f64) -> Vector2<f64> {
         let (sin, cos) = libm::sincos(angle);
         let (x, y) = (self.axis.x, self.axis.y);
         Vector2::new(x * cos - y * sin, x * sin + y * cos)
     }
 
-    /// The cone's half-angle at a range.
+    /// Returns the cone's half-angle at a range.
     fn half_angle_at(&self, range: f64) -> f64 {
         let shrunk = self.half_angle - self.physics.cone_shrink_per_metre * range;
         shrunk.max(self.physics.cone_min_half_angle.min(self.half_angle))
@@ -120,7 +121,7 @@ impl<'a> Echoes<'a> {
         None
     }
 
-    /// Improves on the fan by rays at all that may answer nearer.
+    /// Improves on the fan by rays at every target that may answer nearer.
     fn directed(&self, mut best: f64) -> f64 {
         let mut targets: Vec<(f64, Target)> = Vec::new();
         let bounds = self.bounds(best.min(self.max_range));
@@ -177,7 +178,7 @@ impl<'a> Echoes<'a> {
         }
     }
 
-    /// What answers a ray without mirrors.
+    /// Returns the distance at which a surface answers a ray without mirrors.
     fn directly(&self, angle: f64, limit: f64) -> Option<f64> {
         let direction = self.toward(angle);
         let hit = self.world.first_hit(self.origin, direction, limit)?;
@@ -187,7 +188,7 @@ impl<'a> Echoes<'a> {
         (answers && self.holds(angle, hit.distance)).then_some(hit.distance)
     }
 
-    /// The nearest point of a face that lies in the cone and is met within the critical
+    /// Returns the nearest point of a face that lies in the cone and is met within the critical
     /// angle, whether it is visible or not.
     fn nearest_admissible(&self, face: &Face) -> Option<Point2<f64>> {
         let height = face.height(self.origin);
@@ -196,7 +197,7 @@ impl<'a> Echoes<'a> {
         let admissible = ((foot - reach).max(0.0), (foot + reach).min(face.length));
         let mut half_angle = self.half_angle;
         let mut nearest = None;
-        // A cone that shrinks is narrower at the point than it was assumed to be.
+        // A cone that shrinks is narrower at the point than was assumed.
         for _ in 0..4 {
             let (from, to) = self.within_cone(face, half_angle, admissible)?;
             let point = face.a + face.along * foot.clamp(from, to);
@@ -206,7 +207,7 @@ impl<'a> Echoes<'a> {
         nearest
     }
 
-    /// The part of an interval of a face's line that lies in a cone.
+    /// Returns the part of an interval of a face's line that lies in a cone.
     fn within_cone(
         &self,
         face: &Face,
@@ -229,7 +230,7 @@ impl<'a> Echoes<'a> {
         (from <= to).then_some((from, to))
     }
 
-    /// A box around the cone up to a range.
+    /// Returns a box around the cone up to a range.
     fn bounds(&self, range: f64) -> (Point2<f64>, Point2<f64>) {
         let arc = self.fan().map(|angle| self.origin + self.toward(angle) * range);
         let (low, high) =

@@ -9,9 +9,10 @@ use nalgebra::{Isometry2, Translation2, Vector2};
 use rand_pcg::Pcg64;
 
 impl World {
-    /// What the sensors of a ring measure, fired at one pose (`world_from_robot`).
+    /// Returns the ranges that the sensors of a ring measure, fired at one pose
+    /// (`world_from_robot`).
     ///
-    /// Each sensor draws the same number of random variates, whatever it measures.
+    /// Each sensor draws the same number of random variates, whatever its range.
     pub fn fire(
         &self,
         ring: &SonarRing,
@@ -22,8 +23,9 @@ impl World {
         self.fire_while_moving(ring, pose, Vector2::zeros(), physics, rng)
     }
 
-    /// What the sensors of a ring measure that moves with a velocity \[m/s\], without
-    /// turning: each is fired `firing_interval` after the one before it.
+    /// Returns the ranges of a ring that moves with a velocity \[m/s\], without turning.
+    ///
+    /// Each sensor is fired `firing_interval` after the one before it.
     pub fn fire_while_moving(
         &self,
         ring: &SonarRing,
@@ -42,14 +44,14 @@ impl World {
         ring.beams().iter().map(reading).collect()
     }
 
-    /// The distance at which a sensor of a robot at `pose` would be answered \[m\], without
-    /// noise and false readings, if anything answers within its maximum range.
+    /// Returns the distance at which a sensor of a robot at `pose` would be answered \[m\],
+    /// without noise and false readings, if a surface answers within its maximum range.
     pub fn echo(&self, beam: &Beam, pose: &Isometry2<f64>, physics: &SonarPhysics) -> Option<f64> {
         Echoes::new(self, beam, pose, physics).nearest()
     }
 }
 
-/// The reading of a sensor, given the distance that would be exact.
+/// Returns the reading of a sensor, given the exact distance.
 fn measured(distance: Option<f64>, beam: &Beam, physics: &SonarPhysics, rng: &mut Pcg64) -> Range {
     let noise = normal(rng);
     let [kind, place] = [uniform(rng), uniform(rng)];

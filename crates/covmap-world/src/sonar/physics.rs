@@ -1,16 +1,16 @@
-//! How simulated sonars behave.
+//! The behaviour of simulated sonars.
 
 use crate::scenario::Surface;
 use covmap::short;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
-/// The most rays across a cone.
+/// The largest number of rays across a cone.
 pub(super) const MOST_RAYS: usize = 1001;
-/// The most mirrors that an echo goes by.
+/// The largest number of mirrors on the way of an echo.
 pub(super) const MOST_BOUNCES: u8 = 8;
 
-/// What a sonar reports when the echo comes back before it can listen.
+/// A sonar's report when the echo comes back before the sonar can listen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Blanking {
     /// An echo at its minimum range.
@@ -21,48 +21,48 @@ pub enum Blanking {
 
 /// The physics of simulated sonars; each effect is a parameter.
 ///
-/// The cone's half-angle near the sensor, the minimum and the maximum range belong to the
+/// The cone's half-angle near the sensor, the minimum range and the maximum range belong to the
 /// [`Beam`](covmap_sonar::Beam) of each sensor.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SonarPhysics {
-    /// The surface of everything outside of a scenario's extent, and of all of a world that
-    /// is made from a map.
+    /// The surface of everything outside of a scenario's extent, and of the whole of a world made
+    /// from a map.
     pub surface: Surface,
-    /// A rough surface answers up to this angle from its normal \[rad\], in [0, π/2).
+    /// Largest angle from its normal at which a rough surface answers \[rad\], in [0, π/2).
     pub critical_angle_rough: f64,
-    /// A smooth surface answers up to this angle from its normal \[rad\], in [0, π/2).
+    /// Largest angle from its normal at which a smooth surface answers \[rad\], in [0, π/2).
     pub critical_angle_smooth: f64,
-    /// How many rays are cast across a cone, 11 to 1001; an even number is rounded up, so
-    /// that both sides and the axis get theirs. Rays at the nearest points of surfaces, past
-    /// their ends, and at corners come on top.
+    /// The number of rays cast across a cone, 11 to 1001. An even number is rounded up: both
+    /// sides and the axis get a ray. Rays at the nearest points of surfaces, past their ends, and
+    /// at corners are additional.
     pub cone_rays: usize,
-    /// By how much a cone's half-angle shrinks with the range \[rad/m\].
+    /// Decrease of a cone's half-angle with the range \[rad/m\].
     pub cone_shrink_per_metre: f64,
-    /// A shrinking cone stops at this half-angle \[rad\], or at its first if that is smaller.
+    /// Least half-angle of a shrinking cone \[rad\]; a cone that starts narrower keeps its own.
     pub cone_min_half_angle: f64,
-    /// How many mirrors a sound may meet on its way to what answers it, at most 8.
+    /// The largest number of mirrors between the sonar and the surface that answers, at most 8.
     pub max_bounces: u8,
-    /// Convex edges answer up to this range \[m\]; concave corners always answer.
+    /// Range up to which convex edges answer \[m\]; concave corners always answer.
     pub edge_range: f64,
-    /// What is reported for an echo below the minimum range.
+    /// The report for an echo below the minimum range.
     pub blanking: Blanking,
-    /// Standard deviation of a range is the larger of this \[m\] …
+    /// The standard deviation of a range is the larger of this \[m\] …
     pub noise_min: f64,
     /// … and of this share of the range.
     pub noise_relative: f64,
     /// Probability that an echo is lost.
     pub p_spurious_no_echo: f64,
-    /// Probability of a range that is uniform over all that the sensor can measure.
+    /// Probability of a range that is uniform over the sensor's interval.
     pub p_uniform: f64,
-    /// Probability that the sound of another sensor arrives first: a range that is uniform
-    /// between the minimum and what would have been measured.
+    /// Probability that the sound of another sensor arrives first. The range is then uniform
+    /// between the minimum and the range otherwise measured.
     pub p_crosstalk: f64,
-    /// Time between the firing of one sensor and the next \[s\]; matters to a ring that moves.
+    /// Time between the firing of one sensor and the next \[s\]; it matters to a ring that moves.
     pub firing_interval: f64,
 }
 
-/// What is wrong with the physics.
+/// Why the physics are impossible.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum PhysicsError {
     /// A number is out of its range.
@@ -70,11 +70,11 @@ pub enum PhysicsError {
     OutOfRange {
         /// The parameter.
         name: &'static str,
-        /// Its value.
+        /// The parameter's value.
         value: f64,
-        /// The smallest that is possible.
+        /// The smallest possible value.
         low: f64,
-        /// The largest that is possible.
+        /// The largest possible value.
         high: f64,
     },
     /// The probabilities of the kinds of false readings exceed one.
@@ -86,9 +86,10 @@ pub enum PhysicsError {
 }
 
 impl SonarPhysics {
-    /// The B21r's Polaroid 6500 sonars among rough surfaces: critical angles of 60° (rough)
-    /// and 20° (smooth), 1 % or 1 cm of noise, edges that answer within 2 m, two bounces,
-    /// a constant cone, no crosstalk, and all sensors fired at once.
+    /// Returns the physics of the B21r's Polaroid 6500 sonars among rough surfaces.
+    ///
+    /// Critical angles of 60° (rough) and 20° (smooth), 1 % or 1 cm of noise, edges that answer
+    /// within 2 m, two bounces, a constant cone, no crosstalk, and all sensors fired at once.
     pub fn b21r() -> Self {
         Self {
             surface: Surface::Rough,
@@ -109,7 +110,7 @@ impl SonarPhysics {
         }
     }
 
-    /// The same physics without noise and without false readings.
+    /// Returns the same physics without noise and without false readings.
     #[must_use]
     pub fn without_noise(self) -> Self {
         Self {
@@ -125,7 +126,7 @@ impl SonarPhysics {
     /// Checks every parameter.
     ///
     /// # Errors
-    /// If one is not finite or out of its range.
+    /// If a parameter is not finite or out of its range.
     pub fn validate(&self) -> Result<(), PhysicsError> {
         let [rays, most_rays] = [self.cone_rays, MOST_RAYS].map(|rays| rays as f64);
         // A wall never answers along itself: 89.99°.
@@ -157,7 +158,7 @@ impl SonarPhysics {
         Ok(())
     }
 
-    /// The critical angle of a surface \[rad\].
+    /// Returns the critical angle of a surface \[rad\].
     pub fn critical_angle(&self, surface: Surface) -> f64 {
         match surface {
             Surface::Rough => self.critical_angle_rough,

@@ -45,7 +45,7 @@ pub(crate) fn any_shape() -> impl Strategy<Value = Shape> {
     ]
 }
 
-/// A polygon with points at given distances around a centre, of either winding.
+/// Returns a polygon with points at given distances around a centre, of either winding.
 fn star(((x, y), radii, clockwise): ((f64, f64), Vec<f64>, bool)) -> Shape {
     let count = radii.len() as f64;
     let point = |(k, r): (usize, &f64)| {

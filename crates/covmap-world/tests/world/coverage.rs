@@ -1,4 +1,4 @@
-//! Exact coverage against analytic areas and against a second, slower way to compute it.
+//! Exact coverage against analytic areas and against a second, slower computation.
 
 use crate::build::{any_shapes, rectangle, wall, world};
 use covmap::{Cell, Grid, Raster};
@@ -9,7 +9,7 @@ use std::f64::consts::{FRAC_PI_4, TAU};
 
 const EXACT: f64 = 1e-9;
 
-/// The covered area inside the extent: the margin is outside and full.
+/// Returns the covered area inside the extent: the margin is outside and full.
 fn covered_area(world: &World, resolution: f64) -> f64 {
     let grid = world.grid(resolution).unwrap();
     let cell = resolution * resolution;
@@ -76,7 +76,7 @@ fn the_cell_that_an_extent_cuts_is_partly_outside() {
     assert!((coverage.get(cell).unwrap() - 0.5).abs() < EXACT);
 }
 
-/// The points of a shape, computed apart from the crate.
+/// Returns the points of a shape, computed independently of the crate.
 fn points(shape: &Shape) -> Vec<(f64, f64)> {
     match shape.clone() {
         Shape::Polygon(points) => points,
@@ -107,8 +107,10 @@ fn crossing_height((a, b): &Segment, (c, d): &Segment) -> Option<f64> {
     (sine != 0.0 && (-0.01..=1.01).contains(&t)).then_some(a.1 + u.1 * t)
 }
 
-/// The area of a union inside a box, slab by slab between all heights where anything
-/// happens: widths are linear in a slab, so its middle is exact.
+/// Returns the area of a union inside a box, slab by slab between all heights with a vertex or a
+/// crossing.
+///
+/// Widths are linear in a slab: its middle is exact.
 fn area_by_slabs(shapes: &[Shape], (x0, y0): (f64, f64), (x1, y1): (f64, f64)) -> f64 {
     let closed = |p: Vec<(f64, f64)>| {
         let next = p.clone().into_iter().cycle().skip(1);

@@ -1,4 +1,4 @@
-//! Driving never passes through anything.
+//! A drive never passes through a solid.
 
 use crate::build::{any_shapes, rectangle, wall, world};
 use covmap_sonar::Drive;

@@ -1,4 +1,4 @@
-//! The truth, as its users see it.
+//! The simulated world, as its users see it.
 #![allow(clippy::unwrap_used, reason = "a test may fail")]
 #![allow(clippy::float_cmp, reason = "tests compare exact values")]
 

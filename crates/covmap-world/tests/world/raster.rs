@@ -1,11 +1,11 @@
-//! Worlds that are made from rasters, as pictures.
+//! Worlds made from rasters, drawn as pictures.
 
 use covmap::{Cell, Grid, Raster};
 use covmap_world::{SonarPhysics, Surface, World};
 use nalgebra::{Isometry2, Point2, Vector2};
 use proptest::prelude::*;
 
-/// A raster of cells of .5 m from a picture, the top row first.
+/// Returns a raster of cells of .5 m from a picture, the top row first.
 pub(crate) fn picture(rows: &[&str]) -> Raster<bool> {
     let corner = Point2::new(-3.0, 2.0);
     let grid = Grid::new(corner, 0.5, rows[0].len(), rows.len()).unwrap();
@@ -48,9 +48,9 @@ fn what_is_solid_far_around_the_free_is_no_part_of_the_world() {
     assert_eq!(world.lower_left(), Point2::new(-2.0, 2.5));
     assert_eq!(world.size(), Vector2::new(1.5, 1.5));
     assert_eq!(world.coverage(solid.grid()), solid.map(|&s| f64::from(u8::from(s))));
-    // A raster without anything free stays as it is.
+    // A raster without free cells stays as it is.
     assert_eq!(build(&picture(&["###", "###"])).size(), Vector2::new(1.5, 1.0));
-    // A huge block of walls around a small room costs what the room costs.
+    // A small room in a huge block of walls costs no more than the room.
     let grid = Grid::new(Point2::origin(), 0.05, 4000, 4000).unwrap();
     let room = |v: i32| (2000..2160).contains(&v);
     let solid = Raster::from_fn(grid, |cell| !(room(cell.x) && room(cell.y)));

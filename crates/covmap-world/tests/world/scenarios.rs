@@ -1,4 +1,4 @@
-//! Scenarios as files, good and hostile.
+//! Scenarios as files, valid and hostile.
 
 use crate::build::{rectangle, scenario, wall, with_start, world};
 use covmap_world::{Scenario, Shape, Surface, World, WorldError};
@@ -94,7 +94,7 @@ fn too_much_is_refused() {
     let many = scenario(8.0, 6.0, &vec![circle.clone(); 100_001], Surface::Rough);
     let error = World::from_scenario(&many, Surface::Rough).unwrap_err();
     assert_eq!(error, WorldError::TooManyObstacles(100_001));
-    // So near to each other that none buries another.
+    // The circles are so near to each other that none buries another.
     let beside = |k| Shape::Circle { center: (1.0 + 1e-9 * f64::from(k), 1.0), radius: 0.5 };
     let piled = scenario(8.0, 6.0, &(0..10_000).map(beside).collect::<Vec<_>>(), Surface::Rough);
     let error = World::from_scenario(&piled, Surface::Rough).unwrap_err();
@@ -149,7 +149,7 @@ proptest! {
     }
 }
 
-/// Circles that lie on top of each other, and a free ring around them.
+/// Returns circles that lie on top of each other, and a free ring around them.
 fn heap(count: u32) -> Vec<((f64, f64), f64)> {
     let place = |i: u32, by: f64| 2.0 + 6.0 * (f64::from(i) * by).fract();
     (0..count).map(|i| ((place(i, 0.618_034), place(i, 0.414_214)), 0.7)).collect()
@@ -161,7 +161,7 @@ fn a_thousand_overlapping_circles_are_what_each_of_them_is() {
     let shape = |&(center, radius): &((f64, f64), f64)| Shape::Circle { center, radius };
     let shapes: Vec<Shape> = circles.iter().map(shape).collect();
     let world = world(10.0, 10.0, &shapes, Surface::Rough);
-    // A circle of 64 sides lies between those of these radii.
+    // A circle of 64 sides lies between the circles of these radii.
     let inner = 0.7 * libm::cos(std::f64::consts::PI / 64.0);
     let nearest = |x: f64, y: f64| {
         let distance = |((u, v), _): &((f64, f64), f64)| libm::hypot(x - u, y - v);

@@ -1,4 +1,4 @@
-//! What can be reached and seen, as pictures.
+//! The cells that can be reached and seen, as pictures.
 
 use crate::build::{scenario, wall, world};
 use crate::raster::picture;

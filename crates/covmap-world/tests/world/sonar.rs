@@ -1,4 +1,4 @@
-//! Faithfulness of the simulated sonars: what is known of real ones.
+//! Faithfulness of the simulated sonars to the known behaviour of real ones.
 
 use crate::build::{any_shapes, rectangle, wall, world};
 use covmap_sonar::{Beam, Range, SonarRing};
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 const CONE: f64 = 12.5;
 
-/// One sonar in the middle of a robot, with its cone's half-angle in degrees.
+/// Returns one sonar in the middle of a robot, with its cone's half-angle in degrees.
 fn sonar(half_angle: f64) -> Beam {
     let half_angle = half_angle.to_radians();
     Beam { pose: Isometry2::identity(), half_angle, min_range: 0.26, max_range: 10.7 }
@@ -23,7 +23,8 @@ fn pose(x: f64, y: f64, degrees: f64) -> Isometry2<f64> {
     Isometry2::new(Vector2::new(x, y), degrees.to_radians())
 }
 
-/// How far from the normal of a wall 2 m away it still answers with its own distance.
+/// Returns the largest angle from the normal at which a wall 2 m away still answers with its own
+/// distance.
 fn region_of_constant_range(surface: Surface, half_angle: f64) -> f64 {
     let world = world(60.0, 60.0, &[wall((40.0, 0.0), (40.0, 60.0), 1.0)], surface);
     let at = |degrees: f64| {
@@ -77,8 +78,10 @@ fn a_convex_edge_answers_only_nearby() {
     assert!(at(2.1).is_none_or(|d| d > 2.2));
 }
 
-/// The share of readings while driving along 8 m of corridor that are missing or too long
-/// by more than 10 %, where the nearest point in the cone is within the usable 3 m.
+/// Returns the share of bad readings while driving along 8 m of corridor.
+///
+/// A reading is bad if it is missing, or too long by more than 10 %, where the nearest point in the
+/// cone is within the usable 3 m.
 fn bad_share(surface: Surface) -> f64 {
     let world = world(20.0, 2.5, &[], surface);
     let (ring, physics) = (SonarRing::b21r(), SonarPhysics::b21r());
@@ -152,7 +155,7 @@ fn a_cone_that_shrinks_passes_what_a_wide_one_sees() {
 
 #[test]
 fn a_mirror_shows_what_stands_beside_it() {
-    // A line at 45° to a smooth wall goes on to the rough one, 2 m farther.
+    // A line at 45° to a smooth wall continues to the rough one, 2 m farther.
     let mut scenario =
         crate::build::scenario(10.0, 10.0, &[wall((8.0, 0.0), (8.0, 10.0), 0.2)], Surface::Smooth);
     scenario.obstacles.push(covmap_world::Obstacle {

@@ -8,17 +8,17 @@ use crate::lanes::{LANES, Lanes, TOGETHER, flat, ln};
 /// Evidence for up to [`LANES`] different cells, side by side, to be multiplied into a map.
 #[derive(Debug, Clone)]
 pub struct EvidenceBlock {
-    /// For each bin the weights of all cells; then their posteriors. And up to a multiple of
-    /// [`TOGETHER`] bins that do not matter.
+    /// For each bin the weights of all cells; after [`Self::multiply`] their posteriors. Padding
+    /// fills the last [`TOGETHER`] bins and does not matter.
     weights: Vec<[Lanes; TOGETHER]>,
     prior: Vec<Lanes>,
 }
 
 impl EvidenceBlock {
-    /// A lane without a cell.
+    /// Index of a lane without a cell.
     pub const NO_CELL: u32 = u32::MAX;
 
-    /// A block for maps with a number of bins, at most [`MAX_BINS`].
+    /// Creates a block for maps with a number of bins, at most [`MAX_BINS`].
     pub fn new(bins: usize) -> Self {
         let bins = bins.min(MAX_BINS);
         let ones = [1.0; LANES];
@@ -26,22 +26,22 @@ impl EvidenceBlock {
         Self { weights, prior: vec![ones; bins] }
     }
 
-    /// For each bin a row.
+    /// Returns a row for each bin.
     #[inline(always)]
     fn rows(&self) -> &[Lanes] {
         &self.weights.as_flattened()[..self.prior.len()]
     }
 
-    /// For each bin the weights of all lanes, in proportion to p(c_l | d): to be filled in
-    /// before the block is multiplied. They must be finite, not negative, and the largest of
-    /// a cell must lie between 1e-3 and 1e3. Some bins past the last one do not matter.
+    /// Returns for each bin the weights of all lanes, in proportion to p(c_l | d). The caller fills them in
+    /// before the block is multiplied. Weights must be finite and not negative, and the largest weight of a
+    /// cell must lie between 1e-3 and 1e3. Bins past the last one do not matter.
     #[inline(always)]
     pub fn weights(&mut self) -> &mut [[Lanes; TOGETHER]] {
         &mut self.weights
     }
 
     /// Copies the cells' posteriors, transposed. Not inlined: with wide registers the compiler
-    /// would gather, at twice the time.
+    /// would gather, in twice the time.
     #[inline(never)]
     fn load(&mut self, posterior: &[f32], cells: &[u32; LANES]) {
         let bins = self.prior.len();
@@ -54,8 +54,7 @@ impl EvidenceBlock {
         }
     }
 
-    /// The product of prior and evidence, Eq. (8), normalised over the floor; in place of the
-    /// weights.
+    /// Replaces the weights by the product of prior and evidence, Eq. (8), normalised over the floor.
     #[inline(always)]
     fn multiply(&mut self) {
         #[allow(clippy::cast_possible_truncation, reason = "posteriors are stored as f32")]
@@ -86,7 +85,7 @@ impl EvidenceBlock {
         beyond.fill([1.0; LANES]);
     }
 
-    /// The bins of the modes, the first of several: see [`crate::mode_bin`].
+    /// Returns the bins of the modes; a tie goes to the first bin, as in [`crate::mode_bin`].
     #[inline(always)]
     fn modes(&self) -> Lanes {
         let (mut best, mut mode) = (self.rows()[0], [0.0f32; LANES]);
@@ -102,8 +101,8 @@ impl EvidenceBlock {
         mode
     }
 
-    /// Copies the posteriors back. Returns for each lane whether a bit of it is different. Not
-    /// inlined, as [`Self::load`].
+    /// Copies the posteriors back. Returns for each lane whether any bit changed. Not inlined, as
+    /// [`Self::load`].
     #[inline(never)]
     fn store(&self, posterior: &mut [f32], cells: &[u32; LANES]) -> [bool; LANES] {
         let bins = self.prior.len();
@@ -123,8 +122,8 @@ impl EvidenceBlock {
     }
 }
 
-/// The entropies of [`LANES`] normalised distributions, Eq. (11) \[nats\]: with 11 bins each
-/// to within 2e-6, with 64 to within 1e-5.
+/// Returns the entropies of [`LANES`] normalised distributions, Eq. (11) \[nats\]: with 11 bins
+/// each to within 2e-6, with 64 to within 1e-5.
 #[inline(always)]
 fn entropies(probabilities: &[[Lanes; TOGETHER]]) -> Lanes {
     let mut sum = [0.0f32; LANES];
@@ -139,14 +138,14 @@ fn entropies(probabilities: &[[Lanes; TOGETHER]]) -> Lanes {
     sum
 }
 
-/// The entropy of one stored posterior: the same bits as [`entropies`] gives.
+/// Returns the entropy of one stored posterior, with the same bits as [`entropies`].
 pub(crate) fn entropy(probabilities: &[f32]) -> f32 {
     let minus = |sum: f32, p: &f32| sum - p * ln(&[*p])[0];
     probabilities.iter().fold(0.0, minus).max(0.0)
 }
 
 impl CoverageMap {
-    /// Whether a measurement can change the cell with a row-major index: not if it is pinned.
+    /// Returns whether a measurement can change the cell with a row-major index: not if it is pinned.
     ///
     /// # Panics
     /// If there is no such cell.
@@ -155,12 +154,12 @@ impl CoverageMap {
         self.evidence[index] != Evidence::Pinned
     }
 
-    /// [`Self::multiply`] for many cells at once, in f32: those with the given row-major
-    /// indices, each in its lane, no cell twice and none that is pinned. Calls `changed` for every cell whose
-    /// stored posterior changed, in the order of the lanes, with its lane and its entropies
-    /// before and after \[nats\].
+    /// Multiplies evidence into many cells at once, as [`Self::multiply`] does, but in f32. `cells`
+    /// has the row-major index of the cell in each lane; no cell may appear twice or be pinned.
+    /// Calls `changed` for every cell that was unknown or whose stored posterior changed, in the
+    /// order of the lanes, with its lane and its entropies before and after \[nats\].
     ///
-    /// A posterior differs from that of f64 by less than 2e-6 of itself for a measurement.
+    /// For one measurement a posterior differs from that of f64 by less than 2e-6 of itself.
     ///
     /// # Panics
     /// If a cell lies outside the map, or the block is for another number of bins.

@@ -1,4 +1,4 @@
-//! Families of imagined readings: which there are, and which of their members bound all others.
+//! Families of imagined readings, and the members that bound all others.
 //!
 //! The distances up to the usable range are cut into [`BANDS`]. There is a family of the cells in
 //! front of the end for each band of the cell and each band of the end; one of the cells at the end
@@ -13,22 +13,22 @@ use covmap_model::{Outcome, SensorModel};
 
 /// The number of bands into which distances up to the usable range are put.
 pub(super) const BANDS: usize = 4;
-/// No member of a family gains more than this times the largest of those that are evaluated, in
-/// any of the probes. With 1.05 a histogram was met whose gain is above its bound.
+/// Largest gain of a member of a family in any probe, in units of the largest gain of the members
+/// that are evaluated. With 1.05 a histogram was met whose gain is above its bound.
 const MARGIN: f64 = 1.15;
 /// Histograms that were not probed may exceed that by this factor.
 const CAUTION: f64 = 1.02;
-/// What is added to every ceiling, in units of a gain that matters: where gains nearly cancel, a
-/// factor is no margin.
+/// Addition to every ceiling, in units of a gain that matters: where gains nearly cancel, a factor
+/// is no margin.
 const SLACK: f64 = 4e-3;
 
-/// The family of cells in front of the end, by the bands of both. It is empty if the cell's band is
-/// farther away.
+/// Returns the family of cells in front of the end, by the bands of both. It is empty if the cell's
+/// band is farther away.
 pub(super) fn in_front(cell: usize, end: usize) -> usize {
     cell * BANDS + end
 }
 
-/// The family of cells at the end or behind it, by the band of the end.
+/// Returns the family of cells at the end or behind it, by the band of the end.
 pub(super) fn near_end(end: usize) -> usize {
     BANDS * BANDS + end
 }
@@ -39,14 +39,14 @@ pub(super) const NO_ECHO: usize = BANDS * BANDS + BANDS;
 /// Readings that have one ceiling.
 #[derive(Debug, Clone)]
 pub(super) struct ReadingFamily {
-    /// Those whose gains are evaluated.
+    /// The members that are evaluated.
     pub(super) readings: Vec<ExcessEvidence>,
     margin: f32,
     slack: f32,
 }
 
 impl ReadingFamily {
-    /// The ceiling of each cell of a block.
+    /// Returns the ceiling of each cell of a block.
     #[inline(always)]
     pub(super) fn ceiling(&self, prior: &BlockPrior<'_>) -> Lanes {
         let mut ceiling = [0.0; LANES];
@@ -62,8 +62,8 @@ impl ReadingFamily {
         ceiling
     }
 
-    /// The corners of the family, and as few of the other members as the margin allows: one after
-    /// the other the one that exceeds the ceiling by most.
+    /// Creates a family of its corners and as few of the other members as the margin allows. Each
+    /// step adds the member that exceeds the ceiling by most.
     pub(super) fn new(members: FamilyMembers, probes: &ProbeHistograms) -> Self {
         let FamilyMembers { corners, others: members } = members;
         let gains: Vec<Vec<f64>> = members.iter().map(|member| probes.gains(member)).collect();
@@ -76,7 +76,7 @@ impl ReadingFamily {
             largest.iter_mut().zip(probes.gains(corner)).for_each(|(l, gain)| *l = l.max(gain));
         }
         loop {
-            // How many times as large as allowed the gain of a member is, for the worst probe.
+            // The gain of a member in units of the allowed one, for the worst probe.
             let excess = |gains: &Vec<f64>| {
                 let one =
                     |(gain, largest): (&f64, &f64)| (gain - slack) / (MARGIN * largest).max(1e-12);
@@ -94,8 +94,8 @@ impl ReadingFamily {
 /// Some members of a family, near enough to each other to stand for those between them.
 #[derive(Debug, Clone, Default)]
 pub(super) struct FamilyMembers {
-    /// Those at its edges: a gain that changes little within the family is largest at one of them,
-    /// also where it is next to nothing.
+    /// The members at its edges: a gain that changes little within the family is largest at one of
+    /// them, also where it is next to nothing.
     corners: Vec<Evidence>,
     others: Vec<Evidence>,
 }
@@ -106,7 +106,7 @@ impl FamilyMembers {
     }
 }
 
-/// FamilyMembers of all families. `bands` has the band of every range.
+/// Returns the members of all families. `bands` has the band of every range.
 pub(super) fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> Vec<FamilyMembers> {
     let (half, behind) = (0.5 * model.resolution(), model.parameters().update.behind());
     // Shifted by a quarter of its width, a Gaussian gains about the same.
@@ -115,8 +115,8 @@ pub(super) fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> 
     let shifts = (2.0 / sigma_in).ceil().clamp(8.0, 256.0) as i32;
     let mut families = vec![FamilyMembers::default(); NO_ECHO + 1];
     let echo = |distance: f64, k: usize| Evidence::new(model, distance, Outcome::Echo(ranges[k]));
-    // In a band, its first, last and middle ring; and the second: at the sensor itself half of what
-    // ends there is no distance.
+    // The first, second, middle and last ring of a band. The second counts because half of the
+    // first ring, at the sensor itself, has no distance.
     let band = |band: usize| {
         let rings: Vec<usize> = (0..ranges.len()).filter(|k| bands[*k] == band).collect();
         let (first, last) = (rings.first().copied(), rings.last().copied());

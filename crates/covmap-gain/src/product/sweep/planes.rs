@@ -10,23 +10,23 @@ use std::ops::Range;
 
 use crate::view_points::groups_per_row;
 
-/// How the planes of gains lie in memory: row of cells by row, in each row reading by reading, for
-/// each reading the cells of the row with a border on either side.
+/// Layout of the planes of gains in memory: row of cells by row, in each row reading by reading,
+/// for each reading the cells of the row with a border on either side.
 ///
-/// So what a beam sums over lies at constant offsets from its view-point, whatever the view-point,
-/// and the readings of a cell one `stride` apart.
+/// The terms of the sums of a beam thus lie at constant offsets from any view-point, and the
+/// readings of a cell one `stride` apart.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Layout {
     /// Rows and columns around the grid's cells, as many as a stencil needs, in whole blocks.
     pub(super) border: usize,
-    /// From one reading of a row to the next.
+    /// Distance from one reading of a row to the next.
     pub(super) stride: usize,
-    /// From one row of cells to the next.
+    /// Distance from one row of cells to the next.
     pub(super) row: usize,
 }
 
 impl Layout {
-    /// For as many readings as the ring with the most of them has.
+    /// Creates the layout for as many readings as the ring with the most of them has.
     pub(super) fn new(grid: &Grid, radius: i32, readings: usize) -> Self {
         let border = usize::try_from(radius).unwrap_or(0).next_multiple_of(LANES);
         let stride = grid.width().next_multiple_of(LANES) + 2 * border;
@@ -34,28 +34,29 @@ impl Layout {
     }
 }
 
-/// The planes of a ring, and in which blocks which of its readings are needed.
+/// The planes of a ring, and the readings that each block needs.
 #[derive(Debug, Default)]
 pub(super) struct GainPlanes {
     /// 0 outside of the grid.
     pub(super) gains: Vec<f32>,
-    /// For each block of cells bit by bit.
+    /// For each block of cells its readings, bit by bit.
     pub(super) needed: Vec<u64>,
-    /// The rows that were inside of the grid when these were last used.
+    /// The rows inside of the grid at the last use.
     inside: Range<usize>,
 }
 
 impl Clone for GainPlanes {
-    /// Empty ones: what they hold is never needed again.
+    /// Returns empty planes: their gains are never needed again.
     fn clone(&self) -> Self {
         Self::default()
     }
 }
 
 impl GainPlanes {
-    /// Makes room for a number of rows of cells, some of them `inside` of the grid, of a number of blocks.
-    /// Memory that is asked for as zeros costs nothing until it is used, and most rows outside were
-    /// outside before.
+    /// Makes room for a number of rows of cells, some of them `inside` of the grid, of a number of
+    /// blocks.
+    ///
+    /// Zeroed memory costs nothing until it is used, and most rows outside were outside before.
     pub(super) fn prepare(
         &mut self,
         layout: Layout,
@@ -100,7 +101,7 @@ impl WithSimd for FillRow<'_> {
             let block = y * groups_per_row(grid) + x;
             let prior = belief.prior(block);
             let column = layout.border + x * LANES;
-            // Bit by bit: to ask reading by reading, a processor would guess wrong too often.
+            // Bit by bit: a branch for each reading would be mispredicted too often.
             let mut left = *needed;
             while left != 0 {
                 let first = left.trailing_zeros() as usize;

@@ -7,7 +7,7 @@ use crate::product::tables::beyond::BeyondOutcomes;
 use crate::product::tables::rings::{CellReadings, OutcomeReadings, OwnReading};
 use covmap::lanes::{LANES, Lanes, TOGETHER, add_product, add_scaled};
 
-/// How much each of some readings weighs in all of a beam's outcomes beyond a ring together:
+/// Returns the weight of each of some readings in all of a beam's outcomes beyond a ring together:
 /// Σ_d p(d | c) · weight(d). The `nearest` outcome has the first weights.
 #[inline(always)]
 pub(crate) fn mix_outcomes<'a>(
@@ -27,8 +27,8 @@ pub(crate) fn mix_outcomes<'a>(
 }
 
 impl BeyondOutcomes {
-    /// Adds the gains of a beam's cells by all outcomes together, given what each reading weighs in
-    /// them.
+    /// Adds the gains of a beam's cells by all outcomes together, given the weight of each reading
+    /// in them.
     #[inline(always)]
     pub(crate) fn add(
         &self,
@@ -55,8 +55,8 @@ impl BeyondOutcomes {
     }
 }
 
-/// Σ of the gains of some cells by each of R readings, with a factor for each; 0 for the readings
-/// from R on.
+/// Returns Σ of the gains of some cells by each of R readings, with a factor for each; 0 for the
+/// readings from R on.
 #[inline(always)]
 fn sum_some<const R: usize>(
     factors: &[[f32; TOGETHER]],
@@ -76,7 +76,7 @@ fn sum_some<const R: usize>(
 }
 
 impl OutcomeReadings {
-    /// Σ of the gains of a beam's cells by the outcome.
+    /// Returns Σ of the gains of a beam's cells by the outcome.
     #[inline(always)]
     pub(crate) fn sum(
         &self,
@@ -119,7 +119,7 @@ impl OutcomeReadings {
     }
 }
 
-/// Σ of M readings over some cells, with M weights for each cell.
+/// Returns Σ of M readings over some cells, with M weights for each cell.
 #[inline(always)]
 fn mix<const M: usize>(
     weights: &[f32],

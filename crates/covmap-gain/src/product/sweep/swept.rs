@@ -15,7 +15,7 @@ const BEAMS_TOGETHER: usize = 16;
 /// A row that is asked for, at one ring after the other.
 pub(super) struct SweptRow<'a> {
     pub(super) asked: &'a AskedRow,
-    /// Those of the row, in its order.
+    /// The beams of the row, in its order.
     pub(super) beams: Vec<SweptBeam>,
 }
 
@@ -23,13 +23,14 @@ pub(super) struct SweptRow<'a> {
 pub(super) struct SweptBeam {
     /// Its outcomes but for those that end before the present ring.
     left: Range<usize>,
-    /// Those of the present ring.
+    /// Its outcomes at the present ring.
     pub(super) split: OutcomeSplit,
-    /// What all rings so far contribute.
+    /// Sum of all rings so far.
     gain: [f64; LANES],
 }
 
-/// A beam's outcomes, by where they end from a ring: places in its row's outcomes.
+/// A beam's outcomes, by the position of their end relative to a ring: places in its row's
+/// outcomes.
 #[derive(Debug, Clone, Default)]
 pub(super) struct OutcomeSplit {
     pub(super) near: Range<usize>,
@@ -48,7 +49,7 @@ impl<'a> SweptRow<'a> {
     }
 
     pub(super) fn gains(self) -> RowGains {
-        // What a cell gains by all outcomes together stands nowhere: any may gain enough.
+        // The gain of a single cell by all outcomes together is unknown: any cell may gain enough.
         let answer = |beam: SweptBeam| BeamAnswer {
             gain: beam.gain.map(to_f32),
             promise: [f32::INFINITY; LANES],
@@ -58,7 +59,7 @@ impl<'a> SweptRow<'a> {
 }
 
 impl SweptBeam {
-    /// Goes on to a ring. `outcomes` are the row's; `no_echo` is the outcome that is none.
+    /// Moves on to a ring. `outcomes` are the row's; `no_echo` is the outcome without an echo.
     pub(super) fn advance(&mut self, ring: &DistanceRing, outcomes: &[usize], no_echo: usize) {
         let nearest = ring.near.first().map_or(0, |(k, _)| *k);
         let passed = outcomes[self.left.clone()].iter().take_while(|k| **k < nearest);
@@ -76,11 +77,11 @@ impl SweptBeam {
     }
 }
 
-/// Adds what the cells of a ring contribute to every beam of a row.
+/// Adds the part of the cells of a ring to every beam of a row.
 pub(super) struct SumRing<'a, 'b> {
     pub(super) layout: Layout,
     pub(super) ring: &'a DistanceRing,
-    /// For each beam of the stencil from a view-point to its cells in the planes.
+    /// For each beam of the stencil the offsets from a view-point to its cells in the planes.
     pub(super) offsets: &'a [Vec<isize>],
     pub(super) gains: &'a [f32],
     /// The row of the grid with which the planes begin, but for their border.

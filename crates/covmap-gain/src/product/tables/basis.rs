@@ -1,10 +1,11 @@
-//! The few readings that others are mixtures of, and their gains, which are kept for every cell.
+//! The few readings that stand for others as mixtures, and their gains, which are kept for every
+//! cell.
 //!
-//! What a reading tells of a cell in front of its end depends on σ_out and γ only, whatever the
-//! ring; so does what it tells of one behind, and what no echo tells. Its gain is nearly a mixture of
-//! those of a few readings, with the same weights for every histogram: with the fitted default of 13
-//! in front, 9 behind, and one. These are evaluated when a cell changes, and kept; a mixture of them
-//! takes a fifth of the time that an evaluation does.
+//! The evidence of a reading about a cell in front of its end depends on σ_out and γ only, whatever
+//! the ring; so does its evidence about a cell behind, and that of no echo. Its gain is nearly a
+//! mixture of the gains of a few readings, with the same weights for every histogram: the fitted
+//! default needs 13 in front, 9 behind, and one without an echo. These few are evaluated when a
+//! cell changes, and kept; a mixture takes a fifth of the time of an evaluation.
 
 use super::spanning::SpanningSet;
 use crate::belief::{Belief, BlockPrior};
@@ -16,20 +17,20 @@ use pulp::Arch;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The gain of a mixture may be off by so much of what an interpolated one may, where the readings
-/// are those that tell most.
+/// Largest error of the gain of a mixture, in units of the allowed error of an interpolated gain,
+/// where the readings are those that tell most.
 pub(super) const MIXTURE_TOLERANCE: f64 = 0.5;
-/// The number of readings from which the size of the basis is estimated.
+/// Sample size used to estimate the size of the basis.
 const SAMPLE: usize = 512;
-/// The number of blocks of cells that one thread looks through.
+/// The number of blocks of cells for one thread.
 const BLOCKS: usize = 64;
 
-/// How the gain of an imagined reading is found.
+/// Evaluation of the gain of an imagined reading.
 #[derive(Debug, Clone)]
 pub(crate) enum ReadingGain {
-    /// By evaluating it.
+    /// Direct evaluation.
     Evaluated(ExcessEvidence),
-    /// As a mixture of the basis, from its `first` reading on.
+    /// Mixture of the basis, from its `first` reading on.
     Mixed { first: usize, weights: Vec<f32> },
 }
 
@@ -39,13 +40,13 @@ pub(crate) struct MixtureQueue {
     first: usize,
     /// For each reading the weight of every member.
     weights: Vec<Vec<f64>>,
-    /// For each reading the gains of all probes, in units of what they may be off.
+    /// For each reading the gains of all probes, in units of their allowed errors.
     gains: Vec<Vec<f64>>,
-    /// How many were taken.
+    /// The number of readings that were taken.
     taken: usize,
 }
 
-/// The readings that others are mixtures of, and their gains.
+/// The readings that stand for others as mixtures, and their gains.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Basis {
     readings: Vec<ExcessEvidence>,
@@ -67,7 +68,8 @@ impl Basis {
         MixtureQueue { first, weights, gains, taken: 0 }
     }
 
-    /// The same, unless it takes more than `most`. Some of the readings tell.
+    /// Extends the basis as [`extend`](Self::extend) does, unless a sample of the readings needs
+    /// more than `most`.
     pub(crate) fn extend_by_few(
         &mut self,
         readings: &[&Evidence],
@@ -99,7 +101,7 @@ impl Basis {
         });
     }
 
-    /// The gain of a reading in every cell of a block.
+    /// Returns the gain of a reading in every cell of a block.
     #[inline(always)]
     pub(crate) fn gain(
         &self,
@@ -125,32 +127,32 @@ impl Basis {
 }
 
 impl MixtureQueue {
-    /// The places of the next readings.
+    /// Takes the next readings, and returns their places.
     pub(crate) fn take(&mut self, count: usize) -> Range<usize> {
         self.taken += count;
         self.taken - count..self.taken
     }
 
-    /// The next reading.
+    /// Takes the next reading, and returns its mixture.
     pub(crate) fn mix_next(&mut self) -> ReadingGain {
         let place = self.take(1).start;
         self.sum(&[(1.0, place)])
     }
 
-    /// The gains of all probes by a sum of readings, each times a factor, in units of what they
-    /// may be off.
+    /// Returns the gains of all probes by a sum of readings, each times a factor, in units of their
+    /// allowed errors.
     pub(crate) fn gains(&self, terms: &[(f64, usize)]) -> Vec<f64> {
         sum(&self.gains, terms)
     }
 
-    /// A sum of readings, each times a factor.
+    /// Returns a sum of readings, each times a factor.
     pub(crate) fn sum(&self, terms: &[(f64, usize)]) -> ReadingGain {
         let weights = sum(&self.weights, terms).into_iter().map(to_f32).collect();
         ReadingGain::Mixed { first: self.first, weights }
     }
 }
 
-/// A sum of vectors, each times a factor.
+/// Returns a sum of vectors, each times a factor.
 fn sum(vectors: &[Vec<f64>], terms: &[(f64, usize)]) -> Vec<f64> {
     let mut sum = vec![0.0; vectors.first().map_or(0, Vec::len)];
     for (factor, place) in terms {

@@ -1,9 +1,9 @@
-//! The outcomes that end beyond a ring: how their gains in a cell of the ring are summed.
+//! The outcomes that end beyond a ring, and the sum of their gains in a cell of the ring.
 //!
-//! They are interpolated between a few ranges and a few distances. Along the distance they
-//! are taken apart into polynomials: how a gain changes within a ring is much smaller than the
-//! gain, so that its coefficients need fewer ranges. (Cosines are orthogonal whatever the distances
-//! are: taking apart by itself changes nothing.)
+//! The gains are interpolated between a few ranges and a few distances. Along the distance they are
+//! decomposed into polynomials: the change of a gain within a ring is much smaller than the gain,
+//! so that its coefficients need fewer ranges. (Cosines are orthogonal whatever the distances are:
+//! the decomposition by itself changes nothing.)
 
 use super::basis::{MixtureQueue, ReadingGain};
 use super::spanning::SpanningSet;
@@ -17,7 +17,7 @@ use std::f64::consts::PI;
 pub(crate) struct BeyondOutcomes {
     /// The nearest of the outcomes.
     pub(crate) nearest: usize,
-    /// The first of the readings, and how many there are.
+    /// The first of the readings, and their number.
     pub(crate) first: usize,
     pub(crate) count: usize,
     /// For [`TOGETHER`] readings their weights in every outcome from the nearest on; 0 past the
@@ -35,15 +35,15 @@ pub(crate) struct Lattice {
     pub(crate) of_outcomes: Vec<Vec<f64>>,
     /// For each beam, for each of its cells, the weight of every distance.
     pub(crate) of_cells: Vec<Vec<Vec<f64>>>,
-    /// How many distances.
+    /// The number of distances.
     pub(crate) distances: usize,
-    /// What a gain may be off for each distance, in units of what an interpolated one may.
+    /// Allowed error of a gain for each distance, in units of that of an interpolated gain.
     pub(crate) tolerance: f64,
 }
 
 impl Lattice {
-    /// Takes the lattice's readings, one for each range and distance, from the queue of all that are
-    /// in front; adds as few as allowed in place of them to the ring's `readings`.
+    /// Takes the lattice's readings, one for each range and distance, from the queue of all
+    /// readings in front. Adds as few as allowed in place of them to the ring's `readings`.
     pub(crate) fn reduce(
         self,
         queue: &mut MixtureQueue,
@@ -84,13 +84,13 @@ impl Lattice {
     }
 }
 
-/// A Chebyshev polynomial at as many nodes.
+/// Returns the Chebyshev polynomial of a degree at a number of nodes.
 fn cosines(degree: usize, nodes: usize) -> Vec<f64> {
     let cosine = |node| libm::cos(PI * as_f64(degree) * (as_f64(node) + 0.5) / as_f64(nodes));
     (0..nodes).map(cosine).collect()
 }
 
-/// Rows of numbers, cut into pieces of [`TOGETHER`].
+/// Cuts rows of numbers into pieces of [`TOGETHER`].
 fn together(rows: &[Vec<f64>], count: usize) -> Vec<Vec<[f32; TOGETHER]>> {
     let number = |row: &Vec<f64>, i: usize| row.get(i).map_or(0.0, |x| to_f32(*x));
     let piece =

@@ -1,16 +1,16 @@
-//! Nodes: few values of a variable at which a gain is evaluated, and what each weighs at all others.
+//! Nodes: a few values of a variable at which a gain is evaluated, and their weights at all others.
 //!
-//! What a reading tells of a cell, Eq. (13), is a smooth function of the cell's distance and of the
-//! range as long as the cell lies on one side of the end: σ and γ of Eq. (9) are linear in both. So
-//! it is interpolated by polynomials. How few nodes are enough is measured on
-//! [`ProbeHistograms`] when the tables are made.
+//! The gain of a cell by a reading, Eq. (13), is a smooth function of the cell's distance and of
+//! the range as long as the cell lies on one side of the end: σ and γ of Eq. (9) are linear in
+//! both. It is therefore interpolated by polynomials. The least sufficient number of nodes is
+//! measured on [`ProbeHistograms`] when the tables are made.
 
 use crate::evidence::Evidence;
 use crate::numbers::as_f64;
 use crate::probes::ProbeHistograms;
 use std::f64::consts::PI;
 
-/// Where a function is evaluated, and what each value weighs at each of the points asked for.
+/// Points at which a function is evaluated, and their weights at each of the points asked for.
 #[derive(Debug, Clone)]
 pub(crate) struct Nodes {
     pub(crate) at: Vec<f64>,
@@ -19,19 +19,19 @@ pub(crate) struct Nodes {
 }
 
 impl Nodes {
-    /// The points themselves.
+    /// Takes the points themselves as nodes.
     fn all(points: &[f64]) -> Self {
         let weight = |i, j| f64::from(u8::from(i == j));
         let row = |i| (0..points.len()).map(|j| weight(i, j)).collect();
         Self { at: points.to_vec(), weights: (0..points.len()).map(row).collect() }
     }
 
-    /// A number of nodes; the points themselves if there are no more of them.
+    /// Creates a number of nodes; the points themselves if there are no more of them.
     pub(crate) fn new(points: &[f64], count: usize, shift: Option<f64>) -> Self {
         if count < points.len() { Self::chebyshev(points, count, shift) } else { Self::all(points) }
     }
 
-    /// `count` Chebyshev nodes over the span of the points, equally good in the variable
+    /// Creates `count` Chebyshev nodes over the span of the points, equally good in the variable
     /// `ln(x + shift)`; in x itself if there is no shift.
     fn chebyshev(points: &[f64], count: usize, shift: Option<f64>) -> Self {
         let to = |x: f64| shift.map_or(x, |shift| libm::log(x + shift));
@@ -45,15 +45,17 @@ impl Nodes {
         Self { at: nodes.into_iter().map(|y| back(y).clamp(low, high)).collect(), weights }
     }
 
-    /// What the nodes, which were found with this shift, weigh at other points of their span.
+    /// Returns the weights of the nodes, which were found with this shift, at other points of their
+    /// span.
     pub(crate) fn like_at(&self, points: &[f64], shift: Option<f64>) -> Vec<Vec<f64>> {
         let to = |x: f64| shift.map_or(x, |shift| libm::log(x + shift));
         let nodes: Vec<f64> = self.at.iter().map(|x| to(*x)).collect();
         points.iter().map(|x| lagrange(&nodes, to(*x))).collect()
     }
 
-    /// As few nodes as leave no probe's entropy after the reading that `evidence` makes of a point
-    /// farther off than is allowed, times `leniency`; all points if that is not less.
+    /// Creates the fewest nodes that keep the errors of all probes' entropies within the allowed
+    /// ones, times `leniency`; all points if that is not fewer. `evidence` makes a reading of a
+    /// point.
     pub(crate) fn few(
         points: &[f64],
         shift: Option<f64>,
@@ -79,7 +81,7 @@ impl Nodes {
     }
 }
 
-/// The weights of polynomial interpolation.
+/// Returns the weights of polynomial interpolation.
 fn lagrange(nodes: &[f64], x: f64) -> Vec<f64> {
     let factor = |i: usize, j: usize| (x - nodes[j]) / (nodes[i] - nodes[j]);
     let weight = |i| (0..nodes.len()).filter(|j| *j != i).map(|j| factor(i, j)).product();

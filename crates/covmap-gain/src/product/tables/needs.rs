@@ -1,12 +1,12 @@
-//! In which cells which of a ring's readings the outcomes of a beam need.
+//! The readings of a ring that the outcomes of a beam need in each cell.
 
 use super::rings::{CellReadings, DistanceRing, OutcomeReadings, OwnReading};
 use crate::{Stencil, StencilCell};
 use covmap::lanes::LANES;
 use std::ops::{Range, RangeInclusive};
 
-/// A run of cells of a row that are no farther apart than a block: row, first and last column from a
-/// view-point, and which of the ring's readings any of them needs, bit by bit.
+/// A run of cells of a row that are no farther apart than a block: row, first and last column from
+/// a view-point, and the ring's readings that any of them needs, bit by bit.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct NeededRun {
     pub(crate) dy: isize,
@@ -15,13 +15,13 @@ pub(crate) struct NeededRun {
     pub(crate) readings: u64,
 }
 
-/// The bit of a reading: with more than 64 several share one.
+/// Returns the bit of a reading: with more than 64 several share one.
 #[inline(always)]
 fn bit(reading: usize) -> u64 {
     1 << (reading % 64)
 }
 
-/// What a ring's outcomes need: some readings of all cells of a beam, or of each cell its own.
+/// Needs of a ring's outcomes: some readings of all cells of a beam, or its own of each cell.
 #[derive(Debug, Clone)]
 pub(crate) struct RingNeeds {
     /// For each beam all its cells.
@@ -34,7 +34,7 @@ pub(crate) struct RingNeeds {
     pub(crate) no_echo: u64,
 }
 
-/// What one outcome needs.
+/// Needs of one outcome.
 #[derive(Debug, Clone)]
 pub(crate) struct OutcomeNeeds {
     /// The readings of all cells of a beam, bit by bit.
@@ -44,7 +44,7 @@ pub(crate) struct OutcomeNeeds {
 }
 
 impl RingNeeds {
-    /// What each outcome of a ring needs.
+    /// Finds the needs of each outcome of a ring.
     pub(crate) fn new(ring: &DistanceRing, stencil: &Stencil) -> Self {
         let cells = |beam: usize| &stencil.beams[beam].cells[ring.cells[beam].clone()];
         let bits = |readings: Range<usize>| readings.fold(0, |bits, reading| bits | bit(reading));
@@ -72,8 +72,8 @@ impl RingNeeds {
 }
 
 impl NeededRun {
-    /// The blocks of cells that hold the run, seen from all view-points of a group, of a number of blocks
-    /// in a row.
+    /// Returns the blocks of cells that hold the run, seen from all view-points of a group;
+    /// `blocks` is their number in a row.
     #[inline(always)]
     pub(crate) fn blocks(&self, group: usize, blocks: usize) -> RangeInclusive<isize> {
         let (lanes, x) = (LANES.cast_signed(), (group * LANES).cast_signed());
@@ -82,7 +82,7 @@ impl NeededRun {
     }
 }
 
-/// Runs of cells, with the readings that any of them needs.
+/// Returns runs of cells, with the readings that any of them needs.
 fn runs<'a>(cells: impl Iterator<Item = (&'a StencilCell, u64)>) -> Vec<NeededRun> {
     let mut places: Vec<(isize, isize, u64)> =
         cells.map(|(cell, readings)| (cell.dy as isize, cell.dx as isize, readings)).collect();

@@ -1,4 +1,4 @@
-//! What the tables are off, part by part, on the histograms that they were made with.
+//! Errors of the tables, part by part, on the histograms with which they were made.
 
 use super::basis::{Basis, MIXTURE_TOLERANCE, ReadingGain};
 use super::beyond::{BeyondOutcomes, Lattice};
@@ -11,38 +11,40 @@ use crate::probes::{ProbeHistograms, TOLERANCE};
 use covmap::lanes::TOGETHER;
 use covmap_model::{Outcome, SensorModel};
 
-/// How far the tables of the update by the product, Eq. (9), are off for the outcomes that end
-/// beyond a ring, which are most: each step for the worst of the probed histograms, outcomes and
-/// cells.
+/// Errors of the tables of the update by the product, Eq. (9), for the outcomes that end beyond a
+/// ring.
 ///
-/// A number is the error of the gain of one cell, in units of the largest gain of its histogram and
-/// of a gain that matters in a decision. It is measured, and no proof for other histograms.
+/// These are most of the outcomes. Each step is measured for the worst of the probed histograms,
+/// outcomes and cells.
+///
+/// An error is that of the gain of one cell, in units of the largest gain of its histogram plus a
+/// gain that matters in a decision. It is measured, and no proof for other histograms.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct TableErrors {
-    /// Of the interpolation between some ranges and distances.
+    /// Error of the interpolation between some ranges and distances.
     pub interpolation: f64,
-    /// Of the mixtures of a few readings that stand for those at the nodes.
+    /// Error of the mixtures of a few readings that stand for those at the nodes.
     pub mixtures: f64,
-    /// Of the fewer sums that stand for the nodes.
+    /// Error of the fewer sums that stand for the nodes.
     pub fewer_sums: f64,
-    /// Of the three together.
+    /// Error of the three together.
     pub all: f64,
-    /// Of a single reading in single precision, instead of double.
+    /// Error of a single reading in single precision, instead of double.
     pub single_precision: f64,
-    /// What an interpolated gain may be off.
+    /// Allowed error of an interpolated gain.
     pub allowed: f64,
-    /// What it may be off in the rings of fewest cells.
+    /// Allowed error in the rings of fewest cells.
     pub allowed_in_small_rings: f64,
-    /// How many histograms were probed.
+    /// Number of probed histograms.
     pub probes: usize,
-    /// How many readings at nodes there are, and of how many they are mixtures.
+    /// Number of readings at nodes.
     pub readings: usize,
-    /// See [`readings`](Self::readings).
+    /// Number of readings that stand for [those at nodes](Self::readings) as mixtures.
     pub basis: usize,
 }
 
-/// The gain of a cell over the range of an echo from beyond it, and as the tables of the update by
-/// the product interpolate it.
+/// The gain of a cell over the range of an echo from beyond it, exact and as the tables of the
+/// update by the product interpolate it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RangeInterpolation {
     /// d^l of the cell, in the middle of its ring \[m\].
@@ -51,13 +53,14 @@ pub struct RangeInterpolation {
     pub curve: Vec<(f64, f64, f64)>,
     /// Range \[m\] and gain \[nats\] at the nodes.
     pub nodes: Vec<(f64, f64)>,
-    /// How much an interpolated gain may be off \[nats\].
+    /// Allowed error of an interpolated gain \[nats\].
     pub allowed: f64,
 }
 
 impl RangeInterpolation {
-    /// That of a cell of a distance ring with a histogram, at a number of ranges. `None` for another
-    /// update, and for a ring beyond which nothing ends.
+    /// Interpolates the gain of a cell of a distance ring with a histogram, at a number of ranges.
+    ///
+    /// Returns `None` for another update, and for a ring with fewer than two ranges beyond it.
     pub fn of(
         model: &SensorModel,
         heading: f64,
@@ -96,7 +99,8 @@ impl RangeInterpolation {
 }
 
 impl TableErrors {
-    /// Those of a model's tables, which are made for it. `None` for another update.
+    /// Measures the errors of a model's tables, which are made for it. Returns `None` for another
+    /// update.
     pub fn probed(model: &SensorModel, heading: f64) -> Option<Self> {
         model.parameters().update.product()?;
         let (stencil, probes) = (Stencil::new(model, heading), ProbeHistograms::of_model(model));
@@ -160,7 +164,7 @@ impl TableErrors {
 }
 
 impl UnmixedRing {
-    /// The readings of cells in front of the end, which are those of the lattice.
+    /// Returns the readings of cells in front of the end, which are those of the lattice.
     fn in_front(&self) -> impl Iterator<Item = &Evidence> {
         let all = self.readings.iter();
         all.filter(|(position, _)| *position == CellPosition::InFront).map(|(_, evidence)| evidence)
@@ -168,7 +172,7 @@ impl UnmixedRing {
 }
 
 impl Lattice {
-    /// One cell of each distance: its beam, its place in the ring, and the distance \[m\].
+    /// Returns one cell of each distance: its beam, its place in the ring, and the distance \[m\].
     fn cells(
         &self,
         cells: &[std::ops::Range<usize>],
@@ -187,7 +191,8 @@ impl Lattice {
 }
 
 impl BeyondOutcomes {
-    /// What every reading weighs in an outcome, from the nearest on, times its factor in a cell.
+    /// Returns the weight of every reading in an outcome, from the nearest on, times its factor in
+    /// a cell.
     fn weights_of(&self, outcome: usize, beam: usize, cell: usize) -> Vec<f64> {
         let weight = |i: usize| {
             let (some, one) = (i / TOGETHER, i % TOGETHER);
@@ -198,7 +203,7 @@ impl BeyondOutcomes {
     }
 }
 
-/// The gains of a mixture, of all probes.
+/// Returns the gains of a mixture, of all probes.
 fn mixture(reading: &ReadingGain, of_members: &[&Vec<f64>]) -> Vec<f64> {
     match reading {
         ReadingGain::Evaluated(_) => Vec::new(),
@@ -209,7 +214,7 @@ fn mixture(reading: &ReadingGain, of_members: &[&Vec<f64>]) -> Vec<f64> {
     }
 }
 
-/// All products of a number of one list and one of another.
+/// Returns all products of a number of one list and one of another.
 fn product(a: &[f64], b: &[f64]) -> Vec<f64> {
     a.iter().flat_map(|a| b.iter().map(move |b| a * b)).collect()
 }
@@ -218,7 +223,7 @@ fn refs(vectors: &[Vec<f64>]) -> Vec<&Vec<f64>> {
     vectors.iter().collect()
 }
 
-/// A sum of vectors, each times a weight.
+/// Returns a sum of vectors, each times a weight.
 fn sum(weights: &[f64], vectors: &[&Vec<f64>]) -> Vec<f64> {
     let mut sum = vec![0.0; vectors.first().map_or(0, |vector| vector.len())];
     for (weight, vector) in weights.iter().zip(vectors) {
@@ -227,7 +232,7 @@ fn sum(weights: &[f64], vectors: &[&Vec<f64>]) -> Vec<f64> {
     sum
 }
 
-/// The largest difference of two numbers in the same place.
+/// Returns the largest difference of two numbers in the same place.
 fn far(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }

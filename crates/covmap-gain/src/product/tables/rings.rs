@@ -1,4 +1,4 @@
-//! Which imagined readings the gains of a distance ring's cells are taken from, and what each counts.
+//! The imagined readings that give the gains of a distance ring's cells, and their weights.
 //!
 //! In front of the end the gain of a cell is smooth in its distance and in the range, so that a few
 //! readings stand for all ranges ([`Nodes`]); behind the end it is smooth in the distance; at the end
@@ -15,20 +15,21 @@ use covmap_model::{Linear, Outcome, SensorModel};
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-/// Fewer readings in front may leave a gain off by so much of what an interpolated one may.
+/// Error of a gain that the reduction of the readings in front may cause, in units of the allowed
+/// error of an interpolated gain.
 const REDUCED: f64 = 0.3;
-/// If readings of the end are mixtures of more than this, they are evaluated: to keep their gains
-/// for every cell would take more memory than it is worth.
+/// Largest basis of the readings at the end. If they need a larger one, they are evaluated instead:
+/// keeping its gains for every cell would take more memory than it is worth.
 const MOST_AT_END: usize = 24;
-/// See [`RingBuilder::leniency`].
+/// Largest [`RingBuilder::leniency`].
 pub(super) const MOST_LENIENT: f64 = 10.0;
 
-/// What the beams see at about one distance.
+/// The cells of all beams at about one distance.
 #[derive(Debug, Clone)]
 pub(crate) struct DistanceRing {
     /// The cells of each beam, by their rank in its stencil.
     pub(crate) cells: Vec<Range<usize>>,
-    /// All that the gains of these cells are taken from.
+    /// The readings that give the gains of these cells.
     pub(crate) readings: Vec<ReadingGain>,
     /// The outcomes that end beyond the ring, together.
     pub(crate) beyond: Option<BeyondOutcomes>,
@@ -38,17 +39,17 @@ pub(crate) struct DistanceRing {
     pub(crate) no_echo: Option<OutcomeReadings>,
 }
 
-/// From which of a ring's readings the gains of one outcome are taken.
+/// The readings of a ring that give the gains of one outcome.
 #[derive(Debug, Clone)]
 pub(crate) struct OutcomeReadings {
     /// The first of the readings.
     pub(crate) first: usize,
-    /// How many there are.
+    /// The number of readings.
     pub(crate) count: usize,
     pub(crate) cells: CellReadings,
 }
 
-/// What the readings count in each cell.
+/// Weights of the readings in each cell.
 #[derive(Debug, Clone)]
 pub(crate) enum CellReadings {
     /// For each beam, for each of its cells, the weight of every reading.
@@ -66,7 +67,7 @@ pub(crate) struct OwnReading {
     pub(crate) reading: usize,
 }
 
-/// All rings, nearest first, and the basis that their readings are mixtures of.
+/// Returns all rings, nearest first, and the basis of their readings.
 pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> (Vec<DistanceRing>, Basis) {
     let probes = ProbeHistograms::of_model(model);
     let built = unmixed(model, stencil, &probes);
@@ -98,7 +99,7 @@ pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> (Vec<DistanceRing
     (built.into_iter().map(ring).collect(), basis)
 }
 
-/// All rings, nearest first, before their readings are mixtures.
+/// Returns all rings, nearest first, before their readings are mixtures.
 pub(super) fn unmixed(
     model: &SensorModel,
     stencil: &Stencil,
@@ -116,15 +117,17 @@ pub(super) fn unmixed(
 
 /// A ring before the readings of all rings are known, and with them the basis.
 pub(super) struct UnmixedRing {
-    /// Without readings, and what is taken from a lattice.
+    /// The ring without its readings and without the outcomes beyond it.
     pub(super) ring: DistanceRing,
-    /// Those of the lattice among them, with where the ring's cells lie.
+    /// The readings, with those of the lattice among them, and the position of the ring's cells for
+    /// each.
     pub(super) readings: Vec<(CellPosition, Evidence)>,
     pub(super) lattice: Option<Lattice>,
 }
 
-/// A beam's cells in a ring, by their rank: every cell is in one, also where rounding leaves it out of the rings
-/// of the stencil or puts it in two. Beyond the last range that may be measured rings go on.
+/// Returns a beam's cells in a ring, by their rank. Every cell is in one ring, also where rounding
+/// leaves it out of the rings of the stencil or puts it in two. Rings go on beyond the last range
+/// that may be measured.
 fn members(beam: &BeamStencil, ring: usize, resolution: f64) -> Range<usize> {
     let last = beam.rings.last().map_or(0, |r| r.end);
     let end = |ring: usize| match beam.rings.get(ring) {
@@ -137,7 +140,7 @@ fn members(beam: &BeamStencil, ring: usize, resolution: f64) -> Range<usize> {
     ring.checked_sub(1).map_or(0, end)..end(ring)
 }
 
-/// Where a cell lies from the end of an outcome.
+/// Position of a cell from the end of an outcome.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum CellPosition {
     InFront,
@@ -151,13 +154,14 @@ pub(super) struct RingBuilder<'a> {
     model: &'a SensorModel,
     stencil: &'a Stencil,
     probes: &'a ProbeHistograms,
-    /// A ring of few cells may be less exact: what counts is the sum over all.
+    /// Factor on the allowed error: a ring of few cells may be less exact, because the sum over all
+    /// cells counts.
     pub(super) leniency: f64,
     /// The ring's cells of each beam.
     cells: Vec<Range<usize>>,
     /// All distances of these cells, in ascending order.
     distances: Vec<f64>,
-    /// The readings so far, with where the ring's cells lie.
+    /// The readings so far, with the position of the ring's cells for each.
     readings: Vec<(CellPosition, Evidence)>,
 }
 
@@ -214,7 +218,7 @@ impl<'a> RingBuilder<'a> {
         }
     }
 
-    /// The ring's cells that an outcome covers, by beam and rank.
+    /// Returns the ring's cells that an outcome covers, by beam and rank.
     fn covered(&self, k: usize) -> impl Iterator<Item = (usize, usize)> {
         let beams = self.cells.iter().enumerate();
         beams.flat_map(move |(beam, cells)| {
@@ -223,13 +227,13 @@ impl<'a> RingBuilder<'a> {
         })
     }
 
-    /// Whether any cell that an outcome covers is at such a distance.
+    /// Returns whether any cell that an outcome covers is at a wanted distance.
     fn any_cell(&self, k: usize, is_wanted: impl Fn(f64) -> bool) -> bool {
         self.covered(k).any(|(beam, i)| is_wanted(self.stencil.beams[beam].cells[i].cell_distance))
     }
 
-    /// The nodes of the ranges from the `nearest` beyond the ring on, their shift, and the distance
-    /// of cells for which they are chosen \[m\].
+    /// Returns the nodes of the ranges from the `nearest` beyond the ring on, their shift, and the
+    /// distance of cells for which they are chosen \[m\].
     pub(super) fn in_range(&self, nearest: usize) -> (Nodes, Option<f64>, f64) {
         let (model, probes) = (self.model, (self.probes, self.leniency));
         let (low, high) = (self.distances[0], self.distances[self.distances.len() - 1]);
@@ -241,7 +245,7 @@ impl<'a> RingBuilder<'a> {
         (Nodes::few(ranges, shift, probes, at), shift, middle)
     }
 
-    /// All outcomes from the `nearest` beyond the ring on.
+    /// Makes the lattice of all outcomes from the `nearest` beyond the ring on.
     fn beyond(&mut self, nearest: usize) -> Lattice {
         let (model, probes) = (self.model, (self.probes, self.leniency));
         let at = |distance, range| Evidence::new(model, distance, Outcome::Echo(range));
@@ -265,7 +269,7 @@ impl<'a> RingBuilder<'a> {
         }
     }
 
-    /// One outcome that ends in the ring or before it.
+    /// Makes the readings of one outcome that ends in the ring or before it.
     fn near(&mut self, k: usize) -> OutcomeReadings {
         let (model, outcome) = (self.model, self.stencil.outcome(k));
         if !self.any_cell(k, |d| self.position(d, k) != CellPosition::Behind) {
@@ -285,7 +289,8 @@ impl<'a> RingBuilder<'a> {
         OutcomeReadings { first, count: distances.len(), cells: CellReadings::Own(own) }
     }
 
-    /// An outcome whose gain is smooth in the distance, for the cells that it covers.
+    /// Makes the readings of an outcome whose gain is smooth in the distance, for the cells that it
+    /// covers.
     fn smooth(
         &mut self,
         k: usize,
@@ -302,7 +307,7 @@ impl<'a> RingBuilder<'a> {
         OutcomeReadings { first, count, cells: CellReadings::Weighted(weights) }
     }
 
-    /// For each beam and each of its cells what every node weighs; nothing in cells that the
+    /// Returns the weight of every node for each beam and each of its cells; 0 in cells that the
     /// outcome does not cover.
     fn of_cells(&self, nodes: &Nodes, k: usize) -> Vec<Vec<Vec<f64>>> {
         let none = vec![0.0; nodes.at.len()];
@@ -317,7 +322,7 @@ impl<'a> RingBuilder<'a> {
     }
 }
 
-/// γ over the range is `slope · (range + shift)`: gains are smooth in its logarithm.
+/// Returns the shift in γ = `slope · (range + shift)`: gains are smooth in the logarithm of γ.
 fn shift(gamma: &Linear, distance: f64) -> Option<f64> {
     (gamma.per_range > 0.0).then(|| gamma.at(distance, 0.0) / gamma.per_range)
 }

@@ -1,6 +1,6 @@
-//! A few of many vectors of which all others are sums, nearly.
+//! A few of many vectors, whose sums are nearly all others.
 
-/// Some of many vectors, and what each weighs in all.
+/// Some of many vectors, and their weights in all.
 pub(crate) struct SpanningSet {
     /// The places of the chosen vectors.
     pub(crate) members: Vec<usize>,
@@ -9,8 +9,8 @@ pub(crate) struct SpanningSet {
 }
 
 impl SpanningSet {
-    /// As few vectors as leave no number of any farther off than the tolerance: one after the
-    /// other that one joins which is farthest from what those before it span.
+    /// Chooses as few vectors as leave no number of any vector farther off than the tolerance. Each
+    /// step adds the vector that is farthest from the span of those before it.
     pub(crate) fn of(vectors: &[Vec<f64>], tolerance: f64) -> Self {
         let mut rest = vectors.to_vec();
         let mut parts = vec![Vec::new(); vectors.len()];
@@ -34,8 +34,8 @@ impl SpanningSet {
     }
 }
 
-/// What every member weighs in a vector, by their parts along the directions that the members
-/// brought in one after the other: a member has no part along later ones.
+/// Returns the weight of every member in a vector, by their parts along the directions that the
+/// members brought in one after the other: a member has no part along later ones.
 fn weights(members: &[&Vec<f64>], wanted: &[f64]) -> Vec<f64> {
     let mut weights = vec![0.0; members.len()];
     for direction in (0..members.len()).rev() {

@@ -10,7 +10,7 @@ use proptest::prelude::*;
 const YAML: &str = "image: sub/map.pgm\nresolution: 0.5\norigin: [-1, 2, 0]\nnegate: 0\n\
                     occupied_thresh: 0.65\nfree_thresh: 0.196\n";
 
-/// Loads a map whose image has these bytes, and in whose description these lines stand instead.
+/// Loads a map whose image has these bytes, and whose description has these lines in place of its own.
 fn load(image: &[u8], lines: &str) -> Result<MapServerMap, String> {
     let key = |line: &str| line.split(':').next().unwrap_or_default().to_owned();
     let instead: Vec<String> = lines.lines().map(key).collect();
@@ -24,8 +24,8 @@ fn load(image: &[u8], lines: &str) -> Result<MapServerMap, String> {
     load_map_server(&yaml).map_err(|error| error.to_string())
 }
 
-/// The map as a picture, the first row the top: `.` free, `#` occupied, `?` unknown, and
-/// a digit for tenths in between.
+/// Returns the map as a picture, the top row first: `.` free, `#` occupied, `?` unknown, and a
+/// digit for tenths in between.
 fn picture(map: &MapServerMap) -> String {
     let show = |cell: &MapCell| match cell {
         MapCell::Unknown => '?',
@@ -50,7 +50,7 @@ fn refuse(image: &[u8], lines: &str, expected: &str) {
     assert_eq!(error.lines().count(), 1, "{error}");
 }
 
-/// A PNG image, with a palette and what is transparent in it.
+/// Returns a PNG image, with a palette and its transparency.
 fn png_file(
     (width, height): (u32, u32),
     (color, depth): (ColorType, BitDepth),
@@ -71,7 +71,7 @@ fn png_file(
     bytes
 }
 
-/// A grey image of 8 bits in PGM.
+/// Returns a grey image of 8 bits in PGM.
 fn grey(width: usize, samples: &[u8]) -> Vec<u8> {
     crate::pgm::pgm_bytes(width, samples.len() / width, "", samples)
 }
@@ -207,7 +207,7 @@ fn unknown_grey_that_the_thresholds_make_free_is_measured() {
     assert_eq!(free("free_thresh: 0.25"), 0.5);
     assert_eq!(free("mode: scale"), 0.5);
     assert_eq!(free("mode: raw"), 0.0);
-    // Turned black for white, unknown is 50.
+    // With black and white exchanged, unknown is 50.
     let image = grey(4, &[50, 50, 1, 255]);
     assert_eq!(load(&image, "negate: 1").unwrap().areas.unknown_grey_is_free, 0.0);
     let negated = load(&image, "negate: 1\nfree_thresh: 0.25").unwrap();
@@ -216,8 +216,7 @@ fn unknown_grey_that_the_thresholds_make_free_is_measured() {
     assert_eq!(load(wide, "free_thresh: 0.2").unwrap().areas.unknown_grey_is_free, 0.25);
 }
 
-/// The first row of cells, and where the lower left corner of the map's grid is, when it is
-/// turned.
+/// Returns the cells, the lower left corner of the grid, and the pose of the map turned by a yaw.
 fn turned(yaw: &str) -> (String, Point2<f64>, Isometry2<f64>) {
     let map = load(IMAGE, &format!("origin: [-1, 2, {yaw}]")).unwrap();
     (picture(&map), map.grid.lower_left(), map.world_from_map)
@@ -272,7 +271,7 @@ fn what_was_cut_away_moves_the_corner_of_a_turned_map() {
     assert_eq!(map.grid.lower_left(), Point2::new(-1.5, 3.0));
 }
 
-/// A folder with a description that names an image, and an image beside it.
+/// Returns a folder with a description that names an image, and an image beside it.
 fn beside(named: &str) -> (tempfile::TempDir, Result<MapServerMap, String>) {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("room.pgm"), IMAGE).unwrap();

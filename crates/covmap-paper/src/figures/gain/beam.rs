@@ -12,10 +12,10 @@ const WIDTH: f64 = 1040.0;
 const LEFT: f64 = 64.0;
 /// The height of the bars of probabilities.
 const BARS: f64 = 110.0;
-/// Half of a beam's width over its distance from the robot's centre.
+/// Half of a beam's width, divided by its distance from the robot's centre.
 const HALF_WIDTH: f64 = 0.13;
 
-/// Where a cell lies from the end of an outcome.
+/// The place of a cell relative to the end of an outcome.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Part {
     InFront,
@@ -35,7 +35,7 @@ impl Part {
     }
 }
 
-/// In which part of an outcome the i-th cell of a beam is.
+/// Returns the part of an outcome in which the i-th cell of a beam lies.
 pub(super) fn part(moment: &Moment, seen: Seen, k: usize, i: usize) -> Part {
     let (beam, outcome) = (moment.beam(seen), moment.stencil.outcome(k));
     let Some(parameters) = moment.model.parameters().update.cause() else { return Part::InFront };
@@ -48,7 +48,7 @@ pub(super) fn part(moment: &Moment, seen: Seen, k: usize, i: usize) -> Part {
     }
 }
 
-/// The place of the drawing for points along a beam and to its left, from its sensor \[m\].
+/// The frame of the drawing: points along a beam and to its left, from its sensor \[m\].
 struct Frame {
     scale: f64,
     sensor: [f64; 2],
@@ -61,13 +61,14 @@ impl Frame {
         [self.sensor[0] + self.scale * along, self.sensor[1] - self.scale * left]
     }
 
-    /// A point of the map, from the centre of the view-point's cell.
+    /// Returns the place of a point of the map, given from the centre of the view-point's cell.
     fn of_map(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = self.axis;
         self.along([x * cos + y * sin - self.mount, y * cos - x * sin])
     }
 
-    /// Around the sensor, as far to either side as the beam's cells and some more \[m\].
+    /// Returns an arc around the sensor, as wide as the beam's cells and `more` \[m\] to either
+    /// side.
     fn arc(&self, radius: f64, more: f64) -> Vec<[f64; 2]> {
         let half = ((HALF_WIDTH * (radius + self.mount) + more) / radius.max(1e-3)).min(0.6);
         let angle = |i: i32| half * (f64::from(i) / 8.0 - 1.0);
@@ -156,7 +157,7 @@ pub(super) fn draw(moment: &Moment, seen: Seen) -> Drawing {
     drawing
 }
 
-/// The corners of a cell.
+/// Returns the corners of a cell.
 fn corners(frame: &Frame, cell: &StencilCell, r: f64) -> Vec<[f64; 2]> {
     let (x, y) = (f64::from(cell.dx), f64::from(cell.dy));
     [(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)]
@@ -164,7 +165,7 @@ fn corners(frame: &Frame, cell: &StencilCell, r: f64) -> Vec<[f64; 2]> {
         .to_vec()
 }
 
-/// p(d | c) of every outcome, under the ring that it ends in.
+/// Draws p(d | c) of every outcome, under the ring in which it ends.
 fn draw_bars(
     drawing: &mut Drawing,
     moment: &Moment,

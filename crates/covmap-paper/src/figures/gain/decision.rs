@@ -1,4 +1,4 @@
-//! A decision: E\[I\] of all candidates, their bounds, and which of them were evaluated.
+//! A decision: E\[I\] of all candidates, their bounds, and the candidates that were evaluated.
 
 use super::moment::Moment;
 use super::style::{GREEN, GREY, GREY_INK, ORANGE, SMALL, TEXT, VERMILION, count, key, pale};
@@ -12,10 +12,10 @@ use covmap_draw::{
 const WIDTH: f64 = 1060.0;
 const MAP: f64 = 480.0;
 const LEFT: f64 = 18.0;
-/// The lowest gain stands here on the scale of colours.
+/// The place of the lowest gain on the scale of colours.
 const LOWEST: f64 = 0.15;
 
-/// A candidate with all that is shown of it.
+/// A candidate with the numbers that the figure shows.
 struct Shown {
     cell: Cell,
     gain: f64,
@@ -88,26 +88,26 @@ pub(super) fn draw(moment: &Moment) -> Result<Drawing> {
     Ok(drawing)
 }
 
-/// Where a cell is drawn.
+/// Returns the place of a cell in the drawing.
 fn cell_at(moment: &Moment, cell: Cell, [left, top]: [f64; 2], scale: f64) -> [f64; 2] {
     let from_top = count(moment.grid().height()) - 1.0 - f64::from(cell.y);
     [left + f64::from(cell.x) * scale, top + from_top * scale]
 }
 
-/// The most likely coverage.
+/// Draws the most likely coverage.
 fn draw_map(drawing: &mut Drawing, moment: &Moment, corner: [f64; 2], scale: f64) {
     let grid = moment.grid();
     let color =
         |cell: Cell| coverage_color(moment.map.is_known(cell).then(|| moment.map.mode(cell)));
     let all: Vec<(Cell, Rgb)> = grid.cells().map(|cell| (cell, color(cell))).collect();
-    // Neighbours of one colour are one block.
+    // Neighbours of the same colour are one block.
     for run in all.chunk_by(|a, b| a.1 == b.1 && a.0.y == b.0.y) {
         let at = cell_at(moment, run[0].0, corner, scale);
         drawing.block(at, [count(run.len()) * scale, scale], run[0].1);
     }
 }
 
-/// The robot, the chosen view-point, and the way there.
+/// Draws the robot, the chosen view-point, and the way there.
 fn draw_robot(drawing: &mut Drawing, moment: &Moment, corner: [f64; 2], scale: f64) {
     let middle = |cell: Cell| {
         let [x, y] = cell_at(moment, cell, corner, scale);
@@ -128,7 +128,7 @@ fn draw_robot(drawing: &mut Drawing, moment: &Moment, corner: [f64; 2], scale: f
     }
 }
 
-/// The scale of colours of gains.
+/// Draws the scale of colours of gains.
 fn draw_scale(
     drawing: &mut Drawing,
     [left, y]: [f64; 2],
@@ -150,7 +150,7 @@ fn draw_scale(
     drawing.text(&text, TEXT, [left + 54.0 + width, y], TextAnchor::Start, Rgb::INK);
 }
 
-/// Bounds in descending order, with the gains under them.
+/// Returns the figure of the bounds in descending order, with the gains under them.
 fn figure(mut shown: Vec<Shown>, moment: &Moment) -> Figure {
     shown.sort_by(|a, b| b.bound.total_cmp(&a.bound).then(a.cell.cmp(&b.cell)));
     let points = |value: &dyn Fn(&Shown) -> f64, wanted: &dyn Fn(bool) -> bool, thin: bool| {

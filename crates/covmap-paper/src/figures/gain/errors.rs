@@ -1,4 +1,4 @@
-//! What the fast gains are off, by cause: what is proved, what is probed, and what comes out.
+//! The errors of the fast gains, by cause: proved, probed, and measured.
 
 use super::moment::Moment;
 use super::one_cell::{gains, kinds};
@@ -17,16 +17,16 @@ const ROW: f64 = 25.0;
 /// The ends of the axis.
 const LEAST: f64 = 1e-12;
 const MOST: f64 = 1e-3;
-/// View-points that are compared with the literal equations.
+/// The number of view-points that are compared with the literal equations.
 const COMPARED: usize = 80;
 
-/// One thing by which gains may be off.
+/// A cause of errors in gains.
 struct Row {
     what: String,
     color: Rgb,
     /// Measured values; the largest is what counts.
     measured: Vec<f64>,
-    /// What it may be: mostly, and at most.
+    /// The allowed error: for most rings, and at most.
     allowed: Option<(f64, f64)>,
 }
 
@@ -87,7 +87,7 @@ pub(super) fn draw(by_cause: &Moment, by_product: &Moment, quick: bool) -> Resul
     Ok(drawing)
 }
 
-/// The part of the axis at which a number lies.
+/// Returns the part of the axis at which a number lies.
 fn at(value: f64) -> f64 {
     let share = libm::log(value.max(LEAST) / LEAST) / libm::log(MOST / LEAST);
     LEFT + (RIGHT - LEFT) * share.clamp(0.0, 1.0)
@@ -150,7 +150,7 @@ fn draw_key(drawing: &mut Drawing, y: f64) {
     drawing.text(text, TEXT, [618.0, y], TextAnchor::Start, Rgb::INK);
 }
 
-/// What is the same to the last bit, or bounded whatever the map.
+/// Returns the errors that are zero to the last bit, or bounded for any map.
 fn proved(by_cause: &Moment, by_product: &Moment) -> Result<Vec<Row>> {
     let row = |what: &str, measured: f64, allowed| Row {
         what: what.into(),
@@ -173,7 +173,8 @@ fn proved(by_cause: &Moment, by_product: &Moment) -> Result<Vec<Row>> {
     Ok(rows)
 }
 
-/// The gains that the planner kept through its run, against those of a cache that is told all at once.
+/// Returns the difference between the gains kept through a run and those of a fresh cache of the
+/// whole map.
 fn kept_against_fresh(moment: &Moment) -> Result<f64> {
     let all = moment.view_points();
     let (mut kept, mut fresh) = (moment.gains.clone(), moment.fresh_cache()?);
@@ -200,7 +201,7 @@ fn one_thread_against_four(moment: &Moment) -> Result<f64> {
     Ok(off / largest(moment))
 }
 
-/// The largest probability that is left out of a beam.
+/// Returns the largest probability left out of a beam, summed over its outcomes.
 fn left_out(moment: &Moment) -> f64 {
     let beams = 0..moment.stencil.beams.len();
     let of_beam = |view_point, beam| {
@@ -216,7 +217,7 @@ fn largest(moment: &Moment) -> f64 {
     moment.candidates.iter().map(|c| c.gain.abs()).fold(1e-300, f64::max)
 }
 
-/// What tables are off, for the worst of some histograms.
+/// Returns the errors of the tables, for the worst of some histograms.
 fn probed(by_cause: &Moment, by_product: &Moment, quick: bool) -> Result<Vec<Row>> {
     let errors = TableErrors::probed(&by_product.model, 0.0)
         .ok_or(PaperError::Missing("tables of the update by Eq. (9)"))?;
@@ -246,7 +247,7 @@ fn probed(by_cause: &Moment, by_product: &Moment, quick: bool) -> Result<Vec<Row
     ])
 }
 
-/// E\[I\] against the equations as printed.
+/// Returns the errors of E\[I\] against the equations as printed.
 fn measured(by_cause: &Moment, by_product: &Moment, quick: bool) -> Vec<Row> {
     let of = |what: &str, moment: &Moment| {
         let compared = if quick { 4 } else { COMPARED };
@@ -262,7 +263,7 @@ fn measured(by_cause: &Moment, by_product: &Moment, quick: bool) -> Vec<Row> {
     vec![of("E[I] by Eq. (9)", by_product), of("E[I] by cause", by_cause)]
 }
 
-/// How far gains lie below their bounds, in a sentence.
+/// Describes the distance of gains below their bounds, in a sentence.
 fn bounds(moment: &Moment, update: &str) -> Result<String> {
     let (mut bounds, mut gains) = (moment.fresh_cache()?, moment.fresh_cache()?);
     let all = moment.view_points();

@@ -1,4 +1,4 @@
-//! How what a cache keeps lies in memory: bordered rasters, padded rows, and planes.
+//! The memory layout of a cache: bordered rasters, padded rows, and planes.
 
 use super::moment::Moment;
 use super::style::{
@@ -14,7 +14,7 @@ const LEFT: f64 = 18.0;
 const HALF: f64 = 470.0;
 const WHOLE: f64 = 840.0;
 const ROW: f64 = 13.0;
-/// The group of view-points that is shown, in its row and by its number there.
+/// The group of view-points in the figure, by its number in its row.
 const GROUP: usize = 1;
 
 /// The numbers of one cache.
@@ -70,7 +70,7 @@ fn whisper(drawing: &mut Drawing, text: &str, at: [f64; 2]) {
     drawing.text(text, SMALL, at, TextAnchor::Start, GREY_INK);
 }
 
-/// A raster with a border, a group, and a cell of the stencil as its members see it.
+/// Draws a raster with a border, a group, and a cell of the stencil as the group's members see it.
 fn draw_raster(drawing: &mut Drawing, numbers: &Numbers, [left, top]: [f64; 2], scale: f64) {
     let Numbers { layout, width, height, cell: (dx, dy), y, .. } = *numbers;
     let lanes = layout.lanes;
@@ -115,7 +115,7 @@ fn draw_raster(drawing: &mut Drawing, numbers: &Numbers, [left, top]: [f64; 2], 
     );
 }
 
-/// One row of histograms, bin by bin.
+/// Draws one row of histograms, bin by bin.
 fn draw_rows(drawing: &mut Drawing, numbers: &Numbers, [left, top]: [f64; 2]) {
     let Numbers { layout, width, bins, .. } = *numbers;
     let (lanes, padding) = (layout.lanes, layout.padding);
@@ -158,7 +158,7 @@ fn draw_rows(drawing: &mut Drawing, numbers: &Numbers, [left, top]: [f64; 2]) {
     }
 }
 
-/// Planes of gains of one distance ring.
+/// Draws the planes of gains of one distance ring.
 fn draw_planes(drawing: &mut Drawing, numbers: &Numbers, [left, top]: [f64; 2]) {
     let Numbers { layout, planes, width, .. } = *numbers;
     let readings = planes.row / planes.stride;

@@ -1,4 +1,4 @@
-//! What is known when one decision of a run is taken.
+//! The state of a run at one of its decisions.
 
 use crate::error::{PaperError, Result};
 use covmap::{Cell, CoverageMap, Grid, Raster};
@@ -19,7 +19,7 @@ use std::path::Path;
 const WORLD: &str = "scenarios/lab.ron";
 const SEED: u64 = 1;
 
-/// A decision with all that it was taken from.
+/// A decision with everything on which it was based.
 pub(super) struct Moment {
     pub(super) config: Config,
     pub(super) ring: SonarRing,
@@ -31,9 +31,9 @@ pub(super) struct Moment {
     pub(super) number: usize,
     pub(super) from: Cell,
     pub(super) decision: Decision,
-    /// What the planner knew of gains after the decision.
+    /// The gain cache after the decision.
     pub(super) gains: GainCache,
-    /// How much of a reading from each view-point would be new.
+    /// The new share of a reading from each view-point.
     novelty: Raster<f64>,
     /// All candidates with their gains.
     pub(super) candidates: Vec<CandidateRecord>,
@@ -95,7 +95,7 @@ impl Moment {
         self.config.planner.range_prediction()
     }
 
-    /// What is shown, in words.
+    /// Describes the moment in words.
     pub(super) fn words(&self) -> String {
         format!(
             "{WORLD}, IG, r = {} m, decision {} after {} scans",
@@ -103,7 +103,7 @@ impl Moment {
         )
     }
 
-    /// A cache that is told of the whole map at once.
+    /// Returns a cache that learns the whole map at once.
     pub(super) fn fresh_cache(&self) -> Result<GainCache> {
         let mut cache =
             GainCache::new(&self.model, 0.0, *self.grid(), self.prediction(), Upkeep::Kept)?;
@@ -118,13 +118,13 @@ impl Moment {
         self.novelty.get(view_point).copied().unwrap_or(1.0)
     }
 
-    /// All candidates.
+    /// Returns all candidates.
     pub(super) fn view_points(&self) -> ViewPoints {
         let indices = self.candidates.iter().map(|candidate| self.index(candidate.cell));
         ViewPoints::of(self.grid(), indices)
     }
 
-    /// E\[I\] by the equations as printed.
+    /// Returns E\[I\] by the equations as printed.
     pub(super) fn literal_gain(&self, cell: Cell) -> f64 {
         let (map, model, stencil) = (&self.map, &self.model, &self.stencil);
         let prediction = RangePrediction { novelty: self.novelty(cell), ..self.prediction() };
@@ -135,7 +135,7 @@ impl Moment {
         &self.stencil.beams[seen.beam]
     }
 
-    /// p(d | c) of a beam.
+    /// Returns p(d | c) of a beam.
     pub(super) fn likelihood(&self, seen: Seen) -> RangeLikelihood {
         let (beam, prediction) = (self.beam(seen), self.prediction());
         let cell = |i: usize| seen.view_point.offset(beam.cells[i].dx, beam.cells[i].dy);
@@ -145,14 +145,14 @@ impl Moment {
         likelihood
     }
 
-    /// L of an outcome: that any surface of the map caused it.
+    /// Returns L of an outcome: the probability that any surface of the map caused it.
     pub(super) fn any_cause(&self, seen: Seen, k: usize) -> f64 {
         let (beam, outcome) = (self.beam(seen), self.stencil.outcome(k));
         imagined_causes(&self.map, &self.model, beam, seen.view_point, outcome)
             .map_or(0.0, |causes| causes.by_as_much(self.novelty(seen.view_point)).any)
     }
 
-    /// How many cells of a beam decide its values.
+    /// Returns the number of cells that decide the values of a beam.
     pub(super) fn horizon(&self, seen: Seen) -> usize {
         let index = self.index(seen.view_point);
         let Ok(mut cache) = self.fresh_cache() else { return 0 };
@@ -160,8 +160,8 @@ impl Moment {
         cache.horizon(index, seen.beam)
     }
 
-    /// The beam of a candidate that tells most in a drawing: many outcomes are likely, and yet
-    /// something hides a quarter of it.
+    /// Returns the beam of a candidate that tells most in a drawing: one with many likely outcomes,
+    /// and with a quarter of it hidden.
     pub(super) fn telling_beam(&self) -> Seen {
         let (beams, echoes) = (self.stencil.beams.len(), self.stencil.ranges.len());
         let all = self

@@ -1,4 +1,4 @@
-//! How the gain of a cell is interpolated: over the range, and over the share of "passed".
+//! The interpolation of a cell's gain: over the range, and over the share of "passed".
 
 use super::moment::Moment;
 use super::one_cell::{Gained, at_nodes, gains, kinds};
@@ -7,10 +7,10 @@ use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
 use covmap_gain::RangeInterpolation;
 use covmap_lab::Config;
 
-/// The ring whose cells are shown.
+/// The ring of the cells in the figure.
 const RING: usize = 6;
 
-/// Both evaluators side by side, each with what its interpolation is off.
+/// Returns the figure of both evaluators side by side, each with its interpolation error.
 pub(super) fn figure(by_cause: &Config, of_product: &Moment, quick: bool) -> Result<Figure> {
     let bins = of_product.map.bins();
     let uniform = vec![1.0 / bins as f64; bins];

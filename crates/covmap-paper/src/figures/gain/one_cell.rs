@@ -1,8 +1,8 @@
-//! A map in which one cell alone can gain anything, and one beam alone sees it.
+//! A map in which only one cell can gain anything, and only one beam sees it.
 //!
-//! All cells but one are free for good, and reflect nothing. So no echo is the only outcome, the sum
-//! of Eq. (14) has one term, and the evaluator's answer is the gain of this cell by one share of
-//! "passed": what the evaluator makes of a share is measured from outside, as it is.
+//! All other cells are free for good, and reflect nothing. Therefore no echo is the only outcome,
+//! the sum of Eq. (14) has one term, and the evaluator's answer is the gain of this cell by one
+//! share of "passed". This measures the evaluator's treatment of a share from outside, as it is.
 
 use crate::error::{PaperError, Result};
 use covmap::{CoverageMap, Grid};
@@ -22,26 +22,27 @@ const PREDICTION: RangePrediction = RangePrediction {
     novelty: 1.0,
 };
 
-/// A histogram with what it is called.
+/// A histogram with its name.
 #[derive(Debug, Clone)]
 pub(super) struct Kind {
     pub(super) name: &'static str,
-    /// The evidence that a cell has had; none of a cell that no reading touched.
+    /// The evidence of a cell; `None` for a cell that no reading touched.
     evidence: Option<Vec<f64>>,
 }
 
 /// The gain of a cell by a share.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Gained {
-    /// x.
+    /// The share x.
     pub(super) share: f64,
-    /// By the equations as printed, and by the evaluator \[nats\].
+    /// The gain by the equations as printed, and by the evaluator \[nats\].
     pub(super) literal: f64,
     pub(super) fast: f64,
 }
 
-/// Three cells: untouched, nearly free, and either free or covered. All are most likely free, or
-/// unknown, so that nothing reflects.
+/// Returns three kinds of cells: untouched, nearly free, and either free or covered.
+///
+/// All are most likely free, or unknown: nothing reflects.
 pub(super) fn kinds(bins: usize) -> Vec<Kind> {
     let peak = |center: f64, bin: usize| {
         let z = (covmap::bin_coverage(bin, bins) - center) / 0.12;
@@ -58,8 +59,10 @@ pub(super) fn kinds(bins: usize) -> Vec<Kind> {
     ]
 }
 
-/// What a kind of cell gains by some shares from 0 on. The largest is the largest that the evaluator
-/// is made for, but for the cell's distance from the sensor.
+/// Returns the gains of a kind of cell by `samples` shares above 0.
+///
+/// The largest share is the largest that the evaluator is made for, apart from the cell's distance
+/// from the sensor.
 pub(super) fn gains(config: &Config, kind: &Kind, samples: usize) -> Result<Vec<Gained>> {
     let (ring, _) = config.build()?;
     let cause = config
@@ -76,7 +79,7 @@ pub(super) fn gains(config: &Config, kind: &Kind, samples: usize) -> Result<Vec<
     (1..=samples).map(sample).collect()
 }
 
-/// What a kind of cell gains by the shares at which the evaluator interpolates.
+/// Returns the gains of a kind of cell by the shares at which the evaluator interpolates.
 pub(super) fn at_nodes(config: &Config, kind: &Kind) -> Result<Vec<Gained>> {
     let (ring, _) = config.build()?;
     let model = SensorModel::new(&config.model, &ring, config.resolution)?;
@@ -93,7 +96,7 @@ pub(super) fn at_nodes(config: &Config, kind: &Kind) -> Result<Vec<Gained>> {
     nodes.interpolated_shares().into_iter().map(of_share).collect()
 }
 
-/// One share: ν of a model without an echo says how much is "passed".
+/// Returns the gain by one share: ν of a model without an echo sets the share of "passed".
 fn sample(config: &Config, ring: &SonarRing, kind: &Kind, share: f64) -> Result<Gained> {
     let r = config.resolution;
     let parameters: ModelParameters = config.model.clone().with_cause(|cause| {
@@ -103,7 +106,7 @@ fn sample(config: &Config, ring: &SonarRing, kind: &Kind, share: f64) -> Result<
     let model = SensorModel::new(&parameters, ring, r)?;
     let cause = parameters.update.cause().ok_or(PaperError::Missing("by cause"))?;
     let stencil = Stencil::new(&model, 0.0);
-    // The cell of the first beam of which most of "passed" is said.
+    // The cell of the first beam with the largest share of "passed".
     let said = |i: &usize| cause.passed(stencil.beams[0].cells[*i].met());
     let cells = 0..stencil.beams[0].cells.len();
     let seen = cells

@@ -1,8 +1,8 @@
-//! Colours and small helpers that the drawings share.
+//! Colours and small helpers of the drawings.
 
 use covmap_draw::{Drawing, Rgb, TextAnchor};
 
-/// Of the palette of Okabe and Ito, which the colour-blind tell apart, too.
+/// From the palette of Okabe and Ito, which colour-blind readers can tell apart.
 pub(super) const BLUE: Rgb = Rgb(0, 114, 178);
 pub(super) const VERMILION: Rgb = Rgb(213, 94, 0);
 pub(super) const GREEN: Rgb = Rgb(0, 158, 115);
@@ -19,17 +19,17 @@ pub(super) const PALE: Rgb = Rgb(244, 246, 248);
 pub(super) const TEXT: f64 = 13.0;
 pub(super) const SMALL: f64 = 11.5;
 
-/// A count.
+/// Converts a count.
 pub(super) fn count(n: usize) -> f64 {
     n as f64
 }
 
-/// A paler colour.
+/// Returns a paler colour.
 pub(super) fn pale(color: Rgb) -> Rgb {
     color.mix(Rgb::WHITE, 0.62)
 }
 
-/// An arrow from one point to another.
+/// Draws an arrow from one point to another.
 pub(super) fn arrow(drawing: &mut Drawing, from: [f64; 2], to: [f64; 2], color: Rgb) {
     let (dx, dy) = (to[0] - from[0], to[1] - from[1]);
     let length = libm::hypot(dx, dy).max(1e-9);
@@ -40,7 +40,7 @@ pub(super) fn arrow(drawing: &mut Drawing, from: [f64; 2], to: [f64; 2], color: 
     drawing.polygon(&[to, back(8.0, 3.6), back(8.0, -3.6)], color, color, 0.5);
 }
 
-/// A square of a colour with what it means; returns where the next one may begin.
+/// Draws a square of a colour with its meaning; returns the place of the next one.
 pub(super) fn key(drawing: &mut Drawing, at: [f64; 2], color: Rgb, meaning: &str) -> f64 {
     drawing.block([at[0], at[1] - 10.0], [12.0, 12.0], color);
     drawing.frame([at[0], at[1] - 10.0], [12.0, 12.0], GREY, 0.7);
@@ -48,15 +48,15 @@ pub(super) fn key(drawing: &mut Drawing, at: [f64; 2], color: Rgb, meaning: &str
     at[0] + 18.0 + Drawing::text_width(meaning, TEXT) + 24.0
 }
 
-/// A number with few digits.
+/// Returns a number with few digits.
 pub(super) fn small(value: f64) -> String {
     let exponent = libm::log10(value.abs().max(1e-300)).floor();
     let mantissa = value / libm::pow(10.0, exponent);
-    // Nothing below the smallest number is told apart from 0.
+    // A number below the smallest one counts as 0.
     if value == 0.0 { "0".into() } else { format!("{mantissa:.1}e{exponent}") }
 }
 
-/// Writes what each colour means, one beside the other.
+/// Writes the meaning of each colour, side by side.
 pub(super) fn keys(drawing: &mut Drawing, [left, y]: [f64; 2], meanings: &[(Rgb, &str)]) {
     meanings.iter().fold(left, |x, (color, meaning)| key(drawing, [x, y], *color, meaning));
 }

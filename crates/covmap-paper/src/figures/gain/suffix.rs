@@ -1,4 +1,4 @@
-//! The sums S_q(i): for every outcome of a beam which of its cells are in front, and what is summed.
+//! The sums S_q(i): for every outcome of a beam, its cells in front, and their sums.
 
 use super::beam::{Part, part};
 use super::moment::{Moment, Seen};
@@ -13,7 +13,7 @@ const ROW: f64 = 10.0;
 /// The width of the bars beside the rows, and the height of the sums under the columns.
 const BAR: f64 = 100.0;
 const SUMS: f64 = 120.0;
-/// So much of the largest sum is left in the column that is marked.
+/// The share of the largest sum that is left in the marked column.
 const MARKED: f64 = 0.6;
 
 /// An outcome, as the sums see it.
@@ -21,7 +21,7 @@ struct Row {
     probability: f64,
     /// L(k).
     any: f64,
-    /// The number of cells in front: the first ones.
+    /// The number of cells in front, which are the first ones.
     front: usize,
     parts: Vec<Part>,
 }
@@ -84,7 +84,7 @@ pub(super) fn draw(moment: &Moment, seen: Seen) -> Drawing {
     drawing
 }
 
-/// p_k and L(k) beside the rows.
+/// Draws p_k and L(k) beside the rows.
 fn draw_bars(drawing: &mut Drawing, rows: &[Row], top: f64) {
     let value: fn(&Row) -> f64 = |row| row.probability;
     let columns = [("p_k", value, BLUE), ("L(k)", |row| row.any, GREY)];
@@ -105,7 +105,7 @@ fn draw_bars(drawing: &mut Drawing, rows: &[Row], top: f64) {
     }
 }
 
-/// S_q of a cell: Σ p_k · L(k)^q over the outcomes that have it in front.
+/// Returns S_q of a cell: Σ p_k · L(k)^q over the outcomes with the cell in front.
 fn power_sum(rows: &[Row], i: usize, q: i32) -> f64 {
     rows.iter()
         .filter(|row| i < row.front)
@@ -113,7 +113,7 @@ fn power_sum(rows: &[Row], i: usize, q: i32) -> f64 {
         .sum()
 }
 
-/// The first sums under the columns, each as a part of its largest.
+/// Draws the first sums under the columns, each as a share of its largest.
 fn draw_sums(drawing: &mut Drawing, rows: &[Row], (cells, width): (usize, f64), top: f64) {
     drawing.block([LEFT, top], [MATRIX, SUMS], PALE);
     let mut y = top + 22.0;
@@ -151,7 +151,7 @@ fn draw_sums(drawing: &mut Drawing, rows: &[Row], (cells, width): (usize, f64), 
     drawing.turned_text("S_q(i)", TEXT, [LEFT - 66.0, top + 0.5 * SUMS], Rgb::INK);
 }
 
-/// The column of one cell, and its sum.
+/// Marks the column of one cell, and its sum.
 fn mark(
     drawing: &mut Drawing,
     rows: &[Row],
