@@ -53,16 +53,12 @@ fn entropy(probabilities: &[f64]) -> f64 {
 /// thousands of updates.
 pub(crate) const TIE: f32 = 1e-4;
 
-/// Returns the bin with the largest probability; a tie, to within a relative tolerance of 1e-4, is the lowest coverage.
+/// Returns the bin with the largest probability. Bins within a relative 1e-4 of it tie; a tie goes to the lowest
+/// coverage.
 pub fn mode_bin<T: Copy + Into<f64>>(probabilities: &[T]) -> usize {
-    let (mut best, mut largest) = (0, f64::NEG_INFINITY);
-    for (bin, p) in probabilities.iter().enumerate() {
-        let p: f64 = (*p).into();
-        if p > largest * (1.0 + f64::from(TIE)) || bin == 0 {
-            (best, largest) = (bin, p);
-        }
-    }
-    best
+    let probabilities = || probabilities.iter().map(|p| -> f64 { (*p).into() });
+    let least = probabilities().fold(0.0, f64::max) * (1.0 - f64::from(TIE));
+    probabilities().position(|p| p >= least).unwrap_or(0)
 }
 
 /// A normalised histogram over n coverages `0, 1/(n−1), …, 1`.

@@ -358,7 +358,17 @@ mod tests {
                     prop_assert!((a - b).abs() < 1e-5, "{:?}: {} {}", cell, a, b);
                 }
                 prop_assert!((fast.entropy(cell) - ours.entropy()).abs() < 1e-5);
-                prop_assert_eq!(fast.mode(cell).to_bits(), ours.mode().to_bits());
+                // The first of all bins that are as probable as the largest, to within 1e-4.
+                let largest = ours.probabilities().iter().copied().fold(0.0, f64::max);
+                let first_above = |share: f64| {
+                    let bin = ours.probabilities().iter().position(|p| *p >= share * largest);
+                    covmap::bin_coverage(bin.unwrap(), ours.probabilities().len())
+                };
+                let mode = fast.mode(cell);
+                prop_assert!(
+                    first_above(1.0 - 1.01e-4) <= mode && mode <= first_above(1.0 - 0.99e-4),
+                    "{:?}: {} of {:?}", cell, mode, ours.probabilities()
+                );
             }
         }
 

@@ -88,14 +88,19 @@ impl EvidenceBlock {
     /// Returns the bins of the modes; a tie goes to the first bin, as in [`crate::mode_bin`].
     #[inline(always)]
     fn modes(&self) -> Lanes {
-        let (mut best, mut mode) = (self.rows()[0], [0.0f32; LANES]);
-        let mut bin = 0.0;
-        for w in &self.rows()[1..] {
-            bin += 1.0;
+        let rows = self.rows();
+        let (mut least, mut mode) = (rows[0], [0.0f32; LANES]);
+        for w in &rows[1..] {
             for lane in 0..LANES {
-                let larger = w[lane] > best[lane] * (1.0 + TIE);
-                mode[lane] = if larger { bin } else { mode[lane] };
-                best[lane] = if larger { w[lane] } else { best[lane] };
+                least[lane] = least[lane].max(w[lane]);
+            }
+        }
+        least.iter_mut().for_each(|largest| *largest *= 1.0 - TIE);
+        let mut bin = rows.len() as f32;
+        for w in rows.iter().rev() {
+            bin -= 1.0;
+            for lane in 0..LANES {
+                mode[lane] = if w[lane] >= least[lane] { bin } else { mode[lane] };
             }
         }
         mode
