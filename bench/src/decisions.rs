@@ -2,7 +2,7 @@
 
 use crate::clock::{Clock, median, quantile, timed};
 use crate::situation::{SEED, Situation};
-use crate::table::{Row, Table, duration};
+use crate::table::{RatioRow, RatioTable, duration};
 use crate::{Measuring, tiles};
 use anyhow::{Context, Result};
 use covmap_explore::{Limits, Mission, Run, explore};
@@ -60,7 +60,7 @@ pub(crate) fn explored(world: &World, config: &Config, scans: usize) -> Result<(
 pub(crate) fn small(
     bench: &Measuring<'_>,
     (update, config): &(&str, Config),
-    table: &mut Table,
+    table: &mut RatioTable,
 ) -> Result<()> {
     let Measuring { extent, progress, .. } = bench;
     let side = extent.small;
@@ -96,7 +96,7 @@ pub(crate) fn small(
     let cells = format!("{side} × {side} cells {update}");
     let against = format!("literal f64, {} of {} cells", before.sample, before.of);
     let mut row = |what: String, ours: f64, target: f64| {
-        table.row(Row { what, ours, against: against.clone(), other: oracle, target });
+        table.row(RatioRow { what, ours, against: against.clone(), other: oracle, target });
     };
     row(format!("E[I] at every reachable cell of {cells}, nothing cached"), median(&all), 1e3);
     row(format!("the whole IG decision on {cells}, nothing cached"), median(&choosing), 1e3);
@@ -118,7 +118,7 @@ pub(crate) fn small(
 pub(crate) fn large(
     bench: &Measuring<'_>,
     (update, config): &(&str, Config),
-    table: &mut Table,
+    table: &mut RatioTable,
 ) -> Result<()> {
     let Measuring { extent, progress, .. } = bench;
     let side = extent.large;
@@ -137,7 +137,7 @@ pub(crate) fn large(
     let decision = decision.context("nothing to decide")?;
     let candidates = decision.candidates;
     let next = decide(&mut situation, decision, extent.large_decisions)?;
-    table.row(Row {
+    table.row(RatioRow {
         what: format!("the next decision on {side} × {side} cells {update}, after one more scan"),
         ours: median(&next.seconds),
         against: format!("its own cold one, {candidates} cells"),
@@ -214,7 +214,7 @@ fn compare(
 pub(crate) fn office(
     bench: &Measuring<'_>,
     (update, config): &(&str, Config),
-    table: &mut Table,
+    table: &mut RatioTable,
 ) -> Result<()> {
     let Measuring { extent, progress, .. } = bench;
     progress.say(&format!("decisions in the office {update} …"));

@@ -1,7 +1,7 @@
 //! Distance fields, against the Dijkstra's algorithm of two libraries.
 
 use crate::clock::race;
-use crate::table::{Row, Table};
+use crate::table::{RatioRow, RatioTable};
 use crate::{Measuring, tiles};
 use anyhow::{Context, Result};
 use covmap::{Cell, Grid, Steps};
@@ -94,7 +94,7 @@ impl Zero for Length {
     }
 }
 
-pub(crate) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
+pub(crate) fn compare(bench: &Measuring<'_>, table: &mut RatioTable) -> Result<()> {
     let Measuring { config, extent, progress } = bench;
     let side = extent.large;
     progress.say(&format!("distance fields on {side} × {side} cells …"));
@@ -122,7 +122,7 @@ pub(crate) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
     let what = format!("a distance field on {side} × {side} cells, steps of 1 and √2");
     let mut row = |name: &str, (ours, other): (f64, f64)| {
         let (what, against) = (what.clone(), format!("dijkstra of {name}"));
-        table.row(Row { what, ours, against, other, target: 20.0 });
+        table.row(RatioRow { what, ours, against, other, target: 20.0 });
     };
     row("petgraph", race(extent.rounds.min(3), ours, petgraph));
     row("pathfinding", race(extent.rounds.min(3), ours, pathfinding));

@@ -2,7 +2,7 @@
 
 use crate::Measuring;
 use crate::clock::race;
-use crate::table::{Row, Table};
+use crate::table::{RatioRow, RatioTable};
 use anyhow::Result;
 use covmap_sonar::Beam;
 use covmap_statistics::stream;
@@ -56,7 +56,7 @@ fn rays(
     })
 }
 
-pub(crate) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
+pub(crate) fn compare(bench: &Measuring<'_>, table: &mut RatioTable) -> Result<()> {
     bench.progress.say("firing …");
     let (world, physics) = (boxes()?, bench.config.sonar);
     let (ring, _) = bench.config.build()?;
@@ -68,7 +68,7 @@ pub(crate) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
     let other =
         || all.iter().filter(|(at, to, max)| world.cast_ray(*at, *to, *max).is_some()).count();
     let (ours, other) = race(3 * bench.extent.rounds, ours, other);
-    table.row(Row {
+    table.row(RatioRow {
         what: "fire 24 sonars among 5000 segments".into(),
         ours: ours / f64::from(PLACES),
         against: format!("{} ray casts", ring.beams().len() * physics.cone_rays),

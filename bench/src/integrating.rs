@@ -3,13 +3,13 @@
 use crate::clock::race;
 use crate::decisions::explored;
 use crate::literal::LiteralMap;
-use crate::table::{Row, Table};
+use crate::table::{RatioRow, RatioTable};
 use crate::{Measuring, tiles};
 use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_model::integrate;
 
-pub(crate) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
+pub(crate) fn compare(bench: &Measuring<'_>, table: &mut RatioTable) -> Result<()> {
     let Measuring { config, extent, progress } = bench;
     progress.say("integrating scans …");
     let world = tiles::office(config.sonar.surface)?;
@@ -33,7 +33,7 @@ pub(crate) fn compare(bench: &Measuring<'_>, table: &mut Table) -> Result<()> {
         };
         let (ours, other) = race(extent.rounds, ours, other);
         let scans = run.scans.len() as f64;
-        table.row(Row {
+        table.row(RatioRow {
             what: format!("integrate a scan of 24 beams by Eq. (9), {bins} bins, with entropies"),
             ours: ours / scans,
             against: "plain f64, without tables".into(),

@@ -22,7 +22,7 @@ use covmap_cli::terminal::progress::Progress;
 use covmap_cli::terminal::say;
 use covmap_lab::Config;
 use std::process::ExitCode;
-use table::Table;
+use table::RatioTable;
 
 /// The extent of the measurements.
 #[derive(Debug, Clone, Copy)]
@@ -95,8 +95,8 @@ fn run(arguments: &Bench) -> Result<()> {
         one_core.install(|| growth::point(&config, point))?;
         return Ok(());
     }
-    let mut table = one_core.install(|| -> Result<Table> {
-        let mut table = Table::default();
+    let mut table = one_core.install(|| -> Result<RatioTable> {
+        let mut table = RatioTable::default();
         if wanted(Rows::Decisions) {
             for update in decisions::updates(&config) {
                 decisions::small(&bench, &update, &mut table)?;

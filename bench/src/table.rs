@@ -4,7 +4,7 @@ use std::fmt::{Display, Formatter, Result};
 
 /// One comparison.
 #[derive(Debug)]
-pub(crate) struct Row {
+pub(crate) struct RatioRow {
     /// The work, and its duration \[s\].
     pub(crate) what: String,
     pub(crate) ours: f64,
@@ -17,12 +17,12 @@ pub(crate) struct Row {
 
 /// All comparisons, and further notes.
 #[derive(Debug, Default)]
-pub(crate) struct Table {
-    rows: Vec<Row>,
+pub(crate) struct RatioTable {
+    rows: Vec<RatioRow>,
     notes: Vec<String>,
 }
 
-impl Row {
+impl RatioRow {
     fn ratio(&self) -> f64 {
         self.other / self.ours
     }
@@ -40,8 +40,8 @@ impl Row {
     }
 }
 
-impl Table {
-    pub(crate) fn row(&mut self, row: Row) {
+impl RatioTable {
+    pub(crate) fn row(&mut self, row: RatioRow) {
         self.rows.push(row);
     }
 
@@ -50,11 +50,11 @@ impl Table {
     }
 }
 
-impl Display for Table {
+impl Display for RatioTable {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         let head = ["what", "ours", "against", "ratio", "target", ""].map(str::to_owned);
         let lines: Vec<[String; 6]> =
-            std::iter::once(head).chain(self.rows.iter().map(Row::cells)).collect();
+            std::iter::once(head).chain(self.rows.iter().map(RatioRow::cells)).collect();
         let length = |text: &String| text.chars().count();
         let width = |i: usize| lines.iter().map(|line| length(&line[i])).max().unwrap_or(0);
         let widths: [usize; 6] = std::array::from_fn(width);

@@ -49,7 +49,7 @@ pub(crate) struct Figure {
 }
 
 #[derive(Debug, Args)]
-pub(crate) struct Table {
+pub(crate) struct PaperTable {
     /// Number of the table: only 1
     #[arg(value_parser = ["1"])]
     pub(crate) number: String,

@@ -6,7 +6,7 @@ mod arguments;
 mod paper;
 mod tools;
 
-use arguments::{FIGURE_EXAMPLES, Figure, PAPER_EXAMPLES, Paper, Rest, Table};
+use arguments::{FIGURE_EXAMPLES, Figure, PAPER_EXAMPLES, Paper, PaperTable, Rest};
 use clap::Subcommand;
 use std::process::ExitCode;
 
@@ -19,7 +19,7 @@ enum Command {
     #[command(after_help = FIGURE_EXAMPLES)]
     Figure(Figure),
     /// Makes a table of the paper from its own experiment.
-    Table(Table),
+    Table(PaperTable),
     /// Runs all of the paper's experiments, draws all figures, and judges all claims.
     #[command(after_help = PAPER_EXAMPLES)]
     Paper(Paper),

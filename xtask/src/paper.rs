@@ -1,6 +1,6 @@
 //! `figure`, `table` and `paper`: one of the paper's figures, its table, or all of its experiments.
 
-use crate::arguments::{Experiments, Figure, Paper, Table};
+use crate::arguments::{Experiments, Figure, Paper, PaperTable};
 use anyhow::Result;
 use covmap_cli::terminal::interrupt::{self, Interrupt};
 use covmap_cli::terminal::progress::{Bar, Progress};
@@ -25,7 +25,7 @@ pub(crate) fn figure(arguments: &Figure) -> Result<ExitCode> {
     })
 }
 
-pub(crate) fn table(arguments: &Table) -> Result<ExitCode> {
+pub(crate) fn table(arguments: &PaperTable) -> Result<ExitCode> {
     draw(&arguments.common, &[], |session, folder| drawing::corridor(session, folder).map(drop))
 }
 

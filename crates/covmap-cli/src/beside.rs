@@ -26,15 +26,15 @@ struct Summary {
 }
 
 /// One run.
-struct Row {
+struct RunRow {
     name: String,
     summary: Summary,
 }
 
 pub(crate) fn run(arguments: &Beside) -> Result<ExitCode> {
-    let rows = arguments.runs.iter().map(|dir| Row::read(dir)).collect::<Result<Vec<_>>>()?;
+    let rows = arguments.runs.iter().map(|dir| RunRow::read(dir)).collect::<Result<Vec<_>>>()?;
     let output = FigureFolder::create(&arguments.out, arguments.force.replace())?;
-    let table: Vec<Vec<String>> = rows.iter().map(Row::fields).collect();
+    let table: Vec<Vec<String>> = rows.iter().map(RunRow::fields).collect();
     let quoted = |row: &Vec<String>| row.iter().map(|field| csv::field(field)).collect();
     output.table("runs", &COLUMNS, &table.iter().map(quoted).collect::<Vec<_>>())?;
     output.figure("runs", &figure(&rows))?;
@@ -59,7 +59,7 @@ const COLUMNS: [&str; 11] = [
     "walls_found",
 ];
 
-impl Row {
+impl RunRow {
     fn read(dir: &Path) -> Result<Self> {
         let summary = dir.join("summary.json");
         if !summary.is_file() {
@@ -125,9 +125,9 @@ fn aligned(rows: &[Vec<String>]) -> Vec<String> {
     all.iter().map(line).collect()
 }
 
-fn figure(rows: &[Row]) -> Figure {
-    let panel = |title: &str, y: &str, of: &dyn Fn(&Row) -> Option<f64>| {
-        let of_x = |label: &str, x: &dyn Fn(&Row) -> f64| Chart {
+fn figure(rows: &[RunRow]) -> Figure {
+    let panel = |title: &str, y: &str, of: &dyn Fn(&RunRow) -> Option<f64>| {
+        let of_x = |label: &str, x: &dyn Fn(&RunRow) -> f64| Chart {
             title: title.into(),
             subtitle: String::new(),
             // The scans and paths of strategies differ by factors.
@@ -142,9 +142,9 @@ fn figure(rows: &[Row]) -> Figure {
         panel(
             "How well the map explains the truth",
             "class mean of the log-likelihood [nats]",
-            &Row::class_mean,
+            &RunRow::class_mean,
         ),
-        panel("Walls that are found", "share of the first layer", &Row::walls_found),
+        panel("Walls that are found", "share of the first layer", &RunRow::walls_found),
     ];
     Figure {
         title: "What scans and metres buy".into(),
@@ -155,7 +155,7 @@ fn figure(rows: &[Row]) -> Figure {
 }
 
 /// Returns a line for each strategy, in the order of first appearance.
-fn series(rows: &[Row], point: impl Fn(&Row) -> Option<(f64, f64)>) -> Vec<Series> {
+fn series(rows: &[RunRow], point: impl Fn(&RunRow) -> Option<(f64, f64)>) -> Vec<Series> {
     let mut all: Vec<Series> = Vec::new();
     for row in rows {
         let Some((x, y)) = point(row) else { continue };

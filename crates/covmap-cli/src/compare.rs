@@ -9,8 +9,8 @@ use crate::terminal::progress::Progress;
 use crate::terminal::say;
 use anyhow::{Result, bail};
 use covmap_fit::{
-    Axis, BetaCounting, CellMean, ComparisonSettings, Contender, Crm, Example, LogOdds, Method,
-    MethodParameter, Parameter, Row, TuneSettings, Update, compare, tune,
+    Axis, BetaCounting, CellMean, ComparisonRow, ComparisonSettings, Contender, Crm, Example,
+    LogOdds, Method, MethodParameter, Parameter, TuneSettings, Update, compare, tune,
 };
 use covmap_io::csv;
 use covmap_io::{FileError, OutputFolder, write_json};
@@ -41,7 +41,7 @@ struct Direction {
     checked_on: Vec<String>,
     /// The tuned contenders.
     contenders: Vec<Contender>,
-    rows: Vec<Row>,
+    rows: Vec<ComparisonRow>,
 }
 
 /// A method before its tuning.

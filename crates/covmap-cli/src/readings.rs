@@ -31,7 +31,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use table::Table;
+use table::KindTable;
 
 /// Free space around the walls of a survey \[m\].
 const MARGIN: f64 = 1.0;
@@ -44,7 +44,7 @@ const SEEDS: u64 = 4;
 const SAME_TIME: f64 = 1e-6;
 
 /// A reading of a real sonar, with the truth by the laser.
-struct Reading {
+struct RealReading {
     sensor: usize,
     /// The nearest of the laser's echoes around the sensor's axis \[m\].
     truth: f64,
@@ -55,7 +55,7 @@ struct Reading {
 struct Frame {
     /// The robot's pose in the world of the survey.
     pose: Isometry2<f64>,
-    readings: Vec<Reading>,
+    readings: Vec<RealReading>,
 }
 
 /// A log, with the world that its laser saw.
@@ -96,7 +96,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         rows.push(("fitted", simulated));
     }
     csv::write(&folder.path("readings.csv"), |out| {
-        writeln!(out, "source,{}", Table::HEADING)?;
+        writeln!(out, "source,{}", KindTable::HEADING)?;
         rows.iter().try_for_each(|(name, table)| {
             table.lines(",").iter().try_for_each(|line| writeln!(out, "{name},{line}"))
         })
@@ -125,12 +125,12 @@ fn run_line(arguments: &Arguments, config: &Config) -> Result<String> {
     Ok(output::run_line(&format!("readings {}", names::stem(log)), digest))
 }
 
-fn tell(rows: &[(&str, Table)]) {
+fn tell(rows: &[(&str, KindTable)]) {
     let real = &rows[0].1;
     for (name, table) in rows {
         let likelihood = real.log_likelihood_under(table);
         say::line(format!("{name} ({likelihood:.3} nats a reading)"));
-        say::line(format!("  {}", Table::HEADING.replace(',', "  ")));
+        say::line(format!("  {}", KindTable::HEADING.replace(',', "  ")));
         table.lines("  ").iter().for_each(|line| say::line(format!("  {line}")));
     }
 }
@@ -140,7 +140,7 @@ fn fit(
     arguments: &Arguments,
     config: &Config,
     recording: &Recording,
-    real: &Table,
+    real: &KindTable,
     interrupt: &Interrupt,
 ) -> Result<Config> {
     let progress = Progress::new(arguments.quiet);
@@ -233,12 +233,12 @@ impl Recording {
         Ok(Self { world, frames: found })
     }
 
-    fn real(&self) -> Table {
+    fn real(&self) -> KindTable {
         let readings = self.frames.iter().flat_map(|frame| &frame.readings);
         readings.map(|reading| (reading.truth, reading.range)).collect()
     }
 
-    fn simulated(&self, config: &Config) -> Result<Table> {
+    fn simulated(&self, config: &Config) -> Result<KindTable> {
         let ring = SonarRing::from_specification(&config.robot.ring)?;
         config.sonar.validate()?;
         let mut all = Vec::new();
@@ -269,7 +269,7 @@ fn readings<'a>(
     ring: &'a SonarRing,
     scan: &'a Scan,
     echoes: &'a [Point2<f64>],
-) -> impl Iterator<Item = Reading> + 'a {
+) -> impl Iterator<Item = RealReading> + 'a {
     let sensors = ring.beams().iter().zip(&scan.ranges).enumerate();
     sensors.filter_map(|(sensor, (beam, range))| {
         let in_cone = echoes.iter().filter_map(|echo| {
@@ -277,6 +277,6 @@ fn readings<'a>(
             (seen.y.atan2(seen.x).abs() <= CONE).then(|| seen.coords.norm())
         });
         let truth = in_cone.min_by(f64::total_cmp)?;
-        (*range != Range::Missing).then_some(Reading { sensor, truth, range: *range })
+        (*range != Range::Missing).then_some(RealReading { sensor, truth, range: *range })
     })
 }

@@ -12,7 +12,7 @@ use covmap_io::{to_ron, write_file};
 use covmap_lab::{Frames, frames};
 use covmap_log::Sensor;
 use covmap_sonar::{Range, SonarRing};
-use covmap_survey::{Evidence, Survey, SurveyParameters, survey};
+use covmap_survey::{EchoEvidence, Survey, SurveyParameters, survey};
 use nalgebra::Point2;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -83,7 +83,7 @@ fn picture(
     grid: &Grid,
     survey: &Survey,
     frames: &Frames,
-    evidence: &Raster<Evidence>,
+    evidence: &Raster<EchoEvidence>,
     parameters: &SurveyParameters,
     log: &Path,
 ) -> Result<Picture> {

@@ -91,7 +91,7 @@ pub struct ClassComparison {
 
 /// One method, raw or calibrated, on the test examples.
 #[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
+pub struct ComparisonRow {
     /// The contender's name.
     pub name: String,
     /// Whether its output went through the calibration table of the training examples.
@@ -121,7 +121,7 @@ pub fn compare(
     test: &[Example],
     settings: &ComparisonSettings,
     mut uniform: impl FnMut() -> f64,
-) -> Result<Vec<Row>, ModelError> {
+) -> Result<Vec<ComparisonRow>, ModelError> {
     let cells = TestCells::new(test, settings.blocks, &mut uniform);
     let resamples = resamples(cells.blocks, settings.resamples, &mut uniform);
     let both = |contender: &Contender| -> Result<[Vec<Sums>; 2], ModelError> {
@@ -256,7 +256,7 @@ struct CellMeans<'a> {
 }
 
 impl CellMeans<'_> {
-    fn row(&self, name: &str, calibrated: bool, weighting: Weighting) -> Row {
+    fn row(&self, name: &str, calibrated: bool, weighting: Weighting) -> ComparisonRow {
         let objective = self.estimate(self.own.len() >= 2, |sums, drawn| {
             let is_there = |class| sums.iter().any(|s| s.get(Some(class)).cells > 0);
             weighting.mean(is_there, |class| average(sums, drawn, class, LOG_LIKELIHOOD))
@@ -275,7 +275,7 @@ impl CellMeans<'_> {
                 central_90: estimate(4),
             }
         });
-        Row { name: name.to_owned(), calibrated, objective, classes }
+        ComparisonRow { name: name.to_owned(), calibrated, objective, classes }
     }
 
     /// Returns an estimate, without intervals if there are not enough blocks.

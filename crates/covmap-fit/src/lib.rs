@@ -10,10 +10,36 @@
 //! Metres, radians, nats.
 //!
 //! ```
-//! let axis = covmap_fit::Axis { parameter: covmap_fit::Parameter::SigmaIn, from: 0.15, to: 0.5 };
-//! let mut parameters = covmap_model::ModelParameters::product();
-//! axis.set(&mut parameters, 1.0);
-//! assert_eq!(axis.parameter.get(&parameters), Some(0.5));
+//! use covmap::{Cell, Grid};
+//! use covmap_fit::{Axis, BodyRecord, Example, FitSettings, Parameter, SearchSettings, Weighting, fit};
+//! use covmap_model::ModelParameters;
+//! use covmap_sonar::{Range, Scan, SonarRing};
+//! use nalgebra::{Isometry2, Point2};
+//! use std::ops::ControlFlow;
+//!
+//! let grid = Grid::new(Point2::origin(), 0.2, 20, 20)?;
+//! let pose = Isometry2::translation(2.1, 2.1);
+//! let scans = vec![Scan { pose, time: 0.0, ranges: vec![Range::Echo(1.0); 24] }];
+//! let example = Example {
+//!     name: "a room".into(),
+//!     ring: SonarRing::b21r(),
+//!     body: BodyRecord::standing(0.27, &scans),
+//!     scans,
+//!     grid,
+//!     truth: vec![(Cell::new(13, 10), 0.0), (Cell::new(15, 10), 1.0)],
+//! };
+//! let settings = FitSettings {
+//!     weighting: Weighting::Classes,
+//!     axes: vec![Axis { parameter: Parameter::SigmaIn, from: 0.15, to: 0.6 }],
+//!     starts: 1,
+//!     search: SearchSettings { evaluations: 8, ..SearchSettings::default() },
+//! };
+//! let begin = ModelParameters::product();
+//! let go_on = |_: &covmap_fit::Evaluation| ControlFlow::Continue(());
+//! let fitted = fit(&[example], &begin, &settings, || 0.5, go_on)?;
+//! let sigma_in = Parameter::SigmaIn.get(&fitted.parameters).expect("a parameter of Eq. (9)");
+//! assert!((0.15..=0.6).contains(&sigma_in));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod ascent;
@@ -34,7 +60,9 @@ pub use axis::{Axis, AxisError, Parameter};
 pub use class::ByClass;
 pub use class_score::{ClassScore, ExampleScore};
 pub use compare::{CALIBRATION_LEVELS, CalibrationTable, ClassComparison, ComparisonSettings};
-pub use compare::{CellMean, Contender, Difference, Row, compare, table, trajectory_blocks};
+pub use compare::{
+    CellMean, ComparisonRow, Contender, Difference, compare, table, trajectory_blocks,
+};
 pub use covmap::Class;
 pub use example::{BodyRecord, Example};
 pub use fitting::{Evaluation, FitError, FitSettings, Fitted, Profile, fit, score};

@@ -4,8 +4,8 @@
 
 use covmap::{Cell, Grid};
 use covmap_fit::{
-    Axis, BetaCounting, BodyRecord, CellMean, ComparisonSettings, Contender, Crm, Example, LogOdds,
-    Method, MethodParameter, Row, TuneError, TuneSettings, Update, Weighting, compare,
+    Axis, BetaCounting, BodyRecord, CellMean, ComparisonRow, ComparisonSettings, Contender, Crm,
+    Example, LogOdds, Method, MethodParameter, TuneError, TuneSettings, Update, Weighting, compare,
     trajectory_blocks, tune,
 };
 use covmap_model::ModelParameters;
@@ -81,7 +81,7 @@ fn methods() -> Vec<Contender> {
     updates.into_iter().map(contender).collect()
 }
 
-fn rows() -> Vec<Row> {
+fn rows() -> Vec<ComparisonRow> {
     let training = [example((4.0, 3.0), 1), example((3.1, 2.4), 2)];
     let test = [example((4.4, 2.7), 3)];
     compare(&methods(), &training, &test, &ComparisonSettings::default(), uniform(4))

@@ -37,7 +37,7 @@ use crate::numbers::to_f32;
 use crate::outcomes::{AskedRow, BeamAnswer, RowGains};
 use crate::sight::GroupLikelihood;
 use crate::view_points::groups_per_row;
-use crate::{InformationGain, Stencil, evidence::Evidence};
+use crate::{InformationGain, Stencil, evidence::BinEvidence};
 use beam::CauseBeam;
 use ceilings::{Bands, Ceilings};
 use covmap::Grid;
@@ -234,12 +234,12 @@ impl Cause {
 }
 
 /// Returns the evidence of a kernel with a share: (1 − share)·U + share·N(μ, σ).
-fn evidence(bins: usize, (mu, sigma): (f64, f64), share: f64) -> Evidence {
+fn evidence(bins: usize, (mu, sigma): (f64, f64), share: f64) -> BinEvidence {
     let mut t = vec![0.0; bins];
     gaussian(mu, sigma, &mut t);
     let even = (1.0 - share) / bins as f64;
     t.iter_mut().for_each(|t| *t = even + share * *t);
-    Evidence::of(t)
+    BinEvidence::of(t)
 }
 
 /// Returns the numbers of a bordered raster at a cell, from each view-point of a group.

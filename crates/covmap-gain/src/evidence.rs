@@ -20,7 +20,7 @@ use pulp::{Simd, WithSimd};
 
 /// p(c | d) of one cell, in f64, from which tables are made.
 #[derive(Debug, Clone)]
-pub(crate) struct Evidence {
+pub(crate) struct BinEvidence {
     /// t = p(c | d).
     t: Vec<f64>,
     /// v = t·log t.
@@ -36,7 +36,7 @@ pub(crate) struct ExcessEvidence {
     terms: Vec<(f32, f32)>,
 }
 
-impl Evidence {
+impl BinEvidence {
     pub(crate) fn new(model: &SensorModel, cell_distance: f64, outcome: Outcome) -> Self {
         let mut t = vec![0.0; model.parameters().bins];
         model.evidence(cell_distance, outcome, &mut t);

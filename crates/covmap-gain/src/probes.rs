@@ -5,7 +5,7 @@
 //! many readings leave them.
 
 use crate::belief::BlockPrior;
-use crate::evidence::Evidence;
+use crate::evidence::BinEvidence;
 use crate::numbers::to_f32;
 use covmap::bin_coverage;
 use covmap::lanes::LANES;
@@ -74,12 +74,12 @@ impl ProbeHistograms {
     /// sensor.
     pub(crate) fn of_model(model: &SensorModel) -> Self {
         let near = 2.0 * model.resolution();
-        Self::new(&Evidence::new(model, near, Outcome::Echo(2.0 * near)))
+        Self::new(&BinEvidence::new(model, near, Outcome::Echo(2.0 * near)))
     }
 
     /// Creates a uniform probe, and narrow and wide ones around many coverages, alone and in pairs.
     /// `strongest` is the evidence that tells most.
-    pub(crate) fn new(strongest: &Evidence) -> Self {
+    pub(crate) fn new(strongest: &BinEvidence) -> Self {
         let bins = strongest.bins();
         let mut probes = vec![vec![1.0; bins]];
         for center in [0.0, 0.1, 0.2, 0.35, 0.5, 0.7, 1.0] {
@@ -113,18 +113,18 @@ impl ProbeHistograms {
     }
 
     /// Returns the gain of every probe by a reading, Eq. (13) \[nats\].
-    pub(crate) fn gains(&self, evidence: &Evidence) -> Vec<f64> {
+    pub(crate) fn gains(&self, evidence: &BinEvidence) -> Vec<f64> {
         self.gained(self.after(evidence))
     }
 
     /// Returns the relative entropy of every probe by a reading \[nats\].
-    pub(crate) fn relative_entropies(&self, evidence: &Evidence) -> Vec<f64> {
+    pub(crate) fn relative_entropies(&self, evidence: &BinEvidence) -> Vec<f64> {
         self.histograms.iter().map(|(h, _)| evidence.relative_entropy(h)).collect()
     }
 
     /// Returns the gains of all probes by each of some readings, in units of the allowed error of
     /// an interpolated gain.
-    pub(crate) fn in_tolerances(&self, readings: &[&Evidence]) -> Vec<Vec<f64>> {
+    pub(crate) fn in_tolerances(&self, readings: &[&BinEvidence]) -> Vec<Vec<f64>> {
         let after: Vec<Vec<f64>> = readings.iter().map(|reading| self.after(reading)).collect();
         let allowed = self.allowed(&after, 1.0);
         after.into_iter().map(|after| self.in_units(after, &allowed)).collect()
@@ -137,7 +137,7 @@ impl ProbeHistograms {
 
     /// Returns the largest error of the gains by some readings in single precision, in units of
     /// each probe.
-    pub(crate) fn single_precision(&self, readings: &[&Evidence], units: &[f64]) -> f64 {
+    pub(crate) fn single_precision(&self, readings: &[&BinEvidence], units: &[f64]) -> f64 {
         let mut worst = 0.0f64;
         for (some, units) in self.histograms.chunks(LANES).zip(units.chunks(LANES)) {
             let block = ProbeBlock::new(some);
@@ -163,7 +163,7 @@ impl ProbeHistograms {
     }
 
     /// Returns the entropy of every probe after a reading \[nats\].
-    pub(crate) fn after(&self, evidence: &Evidence) -> Vec<f64> {
+    pub(crate) fn after(&self, evidence: &BinEvidence) -> Vec<f64> {
         self.histograms.iter().map(|(h, u)| evidence.entropy_after(h, u)).collect()
     }
 

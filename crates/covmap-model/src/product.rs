@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 /// Terms of a reading in Eq. (9).
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Reading {
+pub(crate) struct ProductReading {
     /// Where the beam ended \[m\]; infinite if it passed all cells that it concerns.
     end: f64,
     /// d of σ(d^l, d) and γ(d^l, d) \[m\].
@@ -16,10 +16,10 @@ pub(crate) struct Reading {
 
 impl ProductParameters {
     /// Returns the terms of an outcome for all cells.
-    pub(crate) fn reading(&self, outcome: Outcome, usable_range: f64) -> Reading {
-        let passed = |range, gamma| Reading { end: f64::INFINITY, range, gamma };
+    pub(crate) fn reading(&self, outcome: Outcome, usable_range: f64) -> ProductReading {
+        let passed = |range, gamma| ProductReading { end: f64::INFINITY, range, gamma };
         match outcome {
-            Outcome::Echo(d) => Reading { end: d, range: d, gamma: self.gamma },
+            Outcome::Echo(d) => ProductReading { end: d, range: d, gamma: self.gamma },
             Outcome::Beyond(_) => passed(usable_range, self.gamma),
             Outcome::NoEcho => passed(self.no_echo.range, Linear::constant(self.no_echo.gamma)),
         }
@@ -31,7 +31,7 @@ impl ProductParameters {
     pub(crate) fn terms(
         &self,
         resolution: f64,
-        reading: &Reading,
+        reading: &ProductReading,
         cell_distance: f64,
     ) -> (f64, f64, f64) {
         let delta = cell_distance - reading.end;
@@ -45,7 +45,7 @@ impl ProductParameters {
     pub(crate) fn evidence(
         &self,
         resolution: f64,
-        reading: &Reading,
+        reading: &ProductReading,
         cell_distance: f64,
         out: &mut [f64],
     ) {

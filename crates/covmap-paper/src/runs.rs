@@ -11,7 +11,7 @@ const SEED: u64 = 2003;
 
 /// One run.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Run {
+pub struct RecordedRun {
     pub world: String,
     pub strategy: Strategy,
     pub start: usize,
@@ -25,7 +25,7 @@ pub struct Run {
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Runs {
     /// The runs, in the order of the campaign.
-    pub runs: Vec<Run>,
+    pub runs: Vec<RecordedRun>,
 }
 
 /// The units of a paired comparison.
@@ -35,7 +35,7 @@ pub struct Runs {
 #[derive(Debug, Clone, Default)]
 pub struct Units(pub(crate) Grouped<Vec<f64>>);
 
-impl Run {
+impl RecordedRun {
     /// Returns a number of the run; NaN if the run has none of this name.
     pub fn value(&self, metric: &str) -> f64 {
         self.values.get(metric).copied().unwrap_or(f64::NAN)
@@ -60,7 +60,7 @@ impl Runs {
             let strategy = *names.get(&key.strategy)?;
             let (world, start, seed) = (key.world.clone(), key.start, key.seed);
             let cut_short = record.is_cut_short();
-            Some(Run { world, strategy, start, seed, values, cut_short })
+            Some(RecordedRun { world, strategy, start, seed, values, cut_short })
         };
         let mine = records.iter().filter(|record| record.key.setting == setting);
         Self { runs: mine.filter_map(run).collect() }
@@ -94,7 +94,7 @@ impl Runs {
     }
 
     /// Returns the runs of one strategy.
-    pub fn with(&self, strategy: Strategy) -> impl Iterator<Item = &Run> {
+    pub fn with(&self, strategy: Strategy) -> impl Iterator<Item = &RecordedRun> {
         self.runs.iter().filter(move |run| run.strategy == strategy)
     }
 
@@ -119,7 +119,7 @@ impl Runs {
     }
 
     /// Returns a number of the runs of several strategies, by unit.
-    pub fn paired_by(&self, strategies: &[Strategy], of: impl Fn(&Run) -> f64) -> Units {
+    pub fn paired_by(&self, strategies: &[Strategy], of: impl Fn(&RecordedRun) -> f64) -> Units {
         let mut units: BTreeMap<(usize, &str, u64), Vec<Option<f64>>> = BTreeMap::new();
         for run in &self.runs {
             for (place, _) in strategies.iter().enumerate().filter(|(_, s)| **s == run.strategy) {
@@ -198,7 +198,7 @@ pub(crate) type Row<'a> = (&'a str, usize, u64, &'a [(&'a str, f64)]);
 /// Returns runs for tests.
 #[cfg(test)]
 pub(crate) fn made_up(rows: &[Row<'_>]) -> Runs {
-    let run = |(strategy, start, seed, values): &Row<'_>| Run {
+    let run = |(strategy, start, seed, values): &Row<'_>| RecordedRun {
         world: "apartment".into(),
         strategy: strategy.parse().unwrap(),
         start: *start,

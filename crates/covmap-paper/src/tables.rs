@@ -41,12 +41,13 @@ pub(super) fn cost(runs: &Runs) -> Table {
         "run [s]",
     ];
     let row = |strategy: &Strategy| {
-        let number = |of: &dyn Fn(&crate::runs::Run) -> f64| {
+        let number = |of: &dyn Fn(&crate::runs::RecordedRun) -> f64| {
             let mean = runs.paired_by(&[*strategy], of).mean(0);
             mean.map_or("–".to_owned(), |mean| digits(mean.value))
         };
-        let cells =
-            |run: &crate::runs::Run| run.value("share_explored") * run.value("observable_cells");
+        let cells = |run: &crate::runs::RecordedRun| {
+            run.value("share_explored") * run.value("observable_cells")
+        };
         vec![
             strategy.to_string(),
             runs.with(*strategy).count().to_string(),

@@ -39,7 +39,7 @@ pub(crate) enum InSight {
 
 /// Progress of the measurements of one cell.
 #[derive(Debug, Clone, Copy)]
-struct Progress {
+struct CellProgress {
     /// R: the cell is a reason to go to a view-point up to this distance away \[m\].
     limit: f32,
     /// The lowest entropy of this distance band.
@@ -78,7 +78,7 @@ pub(crate) struct Exploration {
     stall_limit: u32,
     max_counted: u32,
     outside: Vec<bool>,
-    progress: Vec<Progress>,
+    progress: Vec<CellProgress>,
     /// Of the counting strategies: the weights so far, and the weight that finishes a cell.
     counts: Option<(ScanCounts, f64)>,
 }
@@ -94,7 +94,7 @@ impl Exploration {
             StallRule::Banded { first, .. } => first.min(usable_range) as f32,
             StallRule::Unbanded | StallRule::Literal => usable_range as f32,
         };
-        let fresh = Progress {
+        let fresh = CellProgress {
             limit,
             lowest: f32::INFINITY,
             nearest: f32::INFINITY,
@@ -214,7 +214,7 @@ impl Exploration {
     }
 }
 
-impl Progress {
+impl CellProgress {
     fn next_band(&mut self, rule: StallRule) {
         #[allow(clippy::cast_possible_truncation, reason = "distances are compared as f32")]
         let closest = match rule {

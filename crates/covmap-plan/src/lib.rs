@@ -10,12 +10,29 @@
 //! Metres, radians, nats.
 //!
 //! ```
-//! use covmap_plan::Strategy;
+//! use covmap::{Cell, CoverageMap, Grid, Raster};
+//! use covmap_model::{ModelParameters, SensorModel, integrate, integrate_body};
+//! use covmap_plan::{Planner, PlannerParameters};
+//! use covmap_sonar::{Range, Scan, SonarRing};
+//! use nalgebra::{Isometry2, Point2};
 //!
-//! let strategy: Strategy = "IG_CL:0.3".parse()?;
-//! assert_eq!(strategy, Strategy::IgCl { alpha: 0.3 });
-//! assert_eq!(strategy.to_string(), "IG_CL:0.3");
-//! # Ok::<(), covmap_plan::StrategyError>(())
+//! let (ring, grid) = (SonarRing::b21r(), Grid::new(Point2::origin(), 0.2, 20, 20)?);
+//! let model = SensorModel::new(&ModelParameters::b21r(), &ring, 0.2)?;
+//! let parameters = PlannerParameters { strategy: "IG_CL:0.3".parse()?, ..PlannerParameters::standard() };
+//! let mut planner = Planner::new(&parameters, &model, &Raster::filled(grid, false), 0.27, 0.0)?;
+//! let mut map = CoverageMap::new(grid, 11)?;
+//! let (home, at) = (Cell::new(10, 10), grid.center(Cell::new(10, 10)));
+//! let changes = integrate_body(&mut map, at, at, 0.27);
+//! planner.body_moved(&map, at, at, &changes);
+//! planner.stand_on(home);
+//!
+//! let pose = Isometry2::translation(at.x, at.y);
+//! let scan = Scan { pose, time: 0.0, ranges: vec![Range::Echo(1.5); 24] };
+//! let changes = integrate(&model, &mut map, &scan);
+//! planner.observe(&map, &scan, &changes);
+//! let decision = planner.choose(&map, home).expect("something is open");
+//! assert!(decision.best[0].gain > 0.0);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
 mod candidate;

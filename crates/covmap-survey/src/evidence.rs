@@ -11,7 +11,7 @@ use nalgebra::{Point2, Vector2};
 
 /// Counts of the beams that met one cell.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct Evidence {
+pub struct EchoEvidence {
     /// Beams that went through the cell.
     pub passed: u32,
     /// Echoes from the cell that a primitive of the survey explains.
@@ -38,12 +38,12 @@ impl Survey {
         grid: &Grid,
         scans: impl IntoIterator<Item = (&'a SonarRing, &'a Scan)>,
         parameters: &SurveyParameters,
-    ) -> Result<Raster<Evidence>, WorldError> {
+    ) -> Result<Raster<EchoEvidence>, WorldError> {
         let near = Near::new(self)?;
         let mut witness = Witness {
             near,
             parameters,
-            evidence: Raster::filled(*grid, Evidence::default()),
+            evidence: Raster::filled(*grid, EchoEvidence::default()),
             unexplained: Vec::new(),
         };
         for (ring, scan) in scans.into_iter().filter(|(_, scan)| is_pose(&scan.pose)) {
@@ -88,7 +88,7 @@ impl Survey {
     }
 }
 
-impl Evidence {
+impl EchoEvidence {
     /// Returns whether the laser saw the cell, and the survey explains the echoes there.
     pub fn is_seen(&self, parameters: &SurveyParameters) -> bool {
         let [passed, explained, unexplained, behind] =
@@ -103,7 +103,7 @@ impl Evidence {
 struct Witness<'a> {
     near: Near,
     parameters: &'a SurveyParameters,
-    evidence: Raster<Evidence>,
+    evidence: Raster<EchoEvidence>,
     /// The cells with unexplained echoes of this scan.
     unexplained: Vec<usize>,
 }

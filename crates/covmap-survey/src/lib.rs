@@ -31,7 +31,7 @@ mod split;
 mod view;
 mod wall;
 
-pub use evidence::Evidence;
+pub use evidence::EchoEvidence;
 pub use parameters::SurveyParameters;
 
 use covmap_sonar::{Scan, SonarRing};

@@ -5,7 +5,7 @@ use covmap::{Cell, Grid};
 use covmap_sonar::{Beam, Range, Scan, SonarRing};
 use covmap_statistics::stream;
 use covmap_survey::{
-    Evidence, Post, Side, Survey, SurveyError, SurveyParameters, Surveyed, WallSegment, survey,
+    EchoEvidence, Post, Side, Survey, SurveyError, SurveyParameters, Surveyed, WallSegment, survey,
 };
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World, WorldError};
 use nalgebra::{Isometry2, Point2, Vector2};
@@ -372,7 +372,7 @@ fn a_recorded_building_is_surveyed_and_its_robot_drove_through_no_wall() {
         let parameters = SurveyParameters::indoor();
         let beams = scans.iter().map(|scan| (&ring, scan));
         let evidence = survey.evidence(&grid, beams, &parameters).unwrap();
-        let sum = |f: fn(&Evidence) -> u32| {
+        let sum = |f: fn(&EchoEvidence) -> u32| {
             evidence.values().iter().map(|e| f64::from(f(e))).sum::<f64>()
         };
         let (explained, unexplained) = (sum(|e| e.explained), sum(|e| e.unexplained));

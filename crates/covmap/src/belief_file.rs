@@ -5,7 +5,7 @@
 //! lower left, one byte of evidence (0 unknown, 1 measured, 2 pinned); then, in the same
 //! order, each cell's probabilities (f32).
 
-use crate::coverage_map::Evidence;
+use crate::coverage_map::EvidenceKind;
 use crate::{CoverageMap, Grid, GridError, MapError};
 use nalgebra::Point2;
 
@@ -117,11 +117,11 @@ impl CoverageMap {
     }
 }
 
-fn parse_evidence(bytes: &[u8]) -> Result<Vec<Evidence>, BeliefFileError> {
+fn parse_evidence(bytes: &[u8]) -> Result<Vec<EvidenceKind>, BeliefFileError> {
     let parse = |(cell, byte): (usize, &u8)| match byte {
-        0 => Ok(Evidence::Unknown),
-        1 => Ok(Evidence::Measured),
-        2 => Ok(Evidence::Pinned),
+        0 => Ok(EvidenceKind::Unknown),
+        1 => Ok(EvidenceKind::Measured),
+        2 => Ok(EvidenceKind::Pinned),
         _ => Err(BeliefFileError::Posterior(cell)),
     };
     bytes.iter().enumerate().map(parse).collect()

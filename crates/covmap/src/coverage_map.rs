@@ -29,7 +29,7 @@ pub struct Change {
 
 /// The kind of evidence on a cell so far.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Evidence {
+pub(crate) enum EvidenceKind {
     /// No measurement touched the cell: its posterior is the uniform prior.
     Unknown,
     /// A measurement touched the cell.
@@ -53,7 +53,7 @@ pub struct CoverageMap {
     pub(crate) grid: Grid,
     pub(crate) bins: usize,
     pub(crate) posterior: Vec<f32>,
-    pub(crate) evidence: Vec<Evidence>,
+    pub(crate) evidence: Vec<EvidenceKind>,
     // Derived from the posterior, and kept because every caller asks for them:
     pub(crate) entropy: Vec<f32>,
     pub(crate) mode_bin: Vec<u8>,
@@ -75,7 +75,7 @@ impl CoverageMap {
             grid,
             bins,
             posterior: vec![p; grid.len() * bins],
-            evidence: vec![Evidence::Unknown; grid.len()],
+            evidence: vec![EvidenceKind::Unknown; grid.len()],
             entropy: vec![entropy(&vec![p; bins]); grid.len()],
             mode_bin: vec![0; grid.len()],
         })
@@ -86,13 +86,13 @@ impl CoverageMap {
         grid: Grid,
         bins: usize,
         posterior: Vec<f32>,
-        evidence: Vec<Evidence>,
+        evidence: Vec<EvidenceKind>,
     ) -> Result<Self, MapError> {
         let mut map = Self::new(grid, bins)?;
         map.posterior = posterior;
         map.evidence = evidence;
         for index in 0..grid.len() {
-            if map.evidence[index] != Evidence::Unknown {
+            if map.evidence[index] != EvidenceKind::Unknown {
                 map.refresh(index);
             }
         }
@@ -125,12 +125,12 @@ impl CoverageMap {
     /// # Panics
     /// This and the methods below panic if the cell lies outside the grid.
     pub fn is_known(&self, cell: Cell) -> bool {
-        self.evidence[self.index(cell)] != Evidence::Unknown
+        self.evidence[self.index(cell)] != EvidenceKind::Unknown
     }
 
     /// Returns whether the cell is free for good, because the robot stood there.
     pub fn is_pinned(&self, cell: Cell) -> bool {
-        self.evidence[self.index(cell)] == Evidence::Pinned
+        self.evidence[self.index(cell)] == EvidenceKind::Pinned
     }
 
     /// Returns the posterior p(c_l) of a cell: uniform if the cell is unknown.
@@ -195,7 +195,7 @@ impl CoverageMap {
     /// Also if there is not one weight for each bin.
     pub fn multiply(&mut self, cell: Cell, evidence: &[f64]) -> Option<Change> {
         let index = self.index(cell);
-        if self.evidence[index] == Evidence::Pinned {
+        if self.evidence[index] == EvidenceKind::Pinned {
             return None;
         }
         let (mut prior, mut posterior) = ([0.0; MAX_BINS], [0.0; MAX_BINS]);
@@ -206,7 +206,7 @@ impl CoverageMap {
             return None;
         }
         posterior.iter_mut().for_each(|p| *p /= z);
-        self.store(cell, index, posterior, Evidence::Measured)
+        self.store(cell, index, posterior, EvidenceKind::Measured)
     }
 
     /// Declares that a cell is free, for good: the body of the robot was there and touched nothing.
@@ -216,7 +216,7 @@ impl CoverageMap {
         let index = self.index(cell);
         let mut free = [0.0; MAX_BINS];
         free[0] = 1.0;
-        self.store(cell, index, &mut free[..self.bins], Evidence::Pinned)
+        self.store(cell, index, &mut free[..self.bins], EvidenceKind::Pinned)
     }
 
     fn store(
@@ -224,7 +224,7 @@ impl CoverageMap {
         cell: Cell,
         index: usize,
         posterior: &mut [f64],
-        evidence: Evidence,
+        evidence: EvidenceKind,
     ) -> Option<Change> {
         posterior.iter_mut().for_each(|p| *p = p.max(PROBABILITY_FLOOR));
         let sum: f64 = posterior.iter().sum();

@@ -1,6 +1,6 @@
 //! Calibrated reading of a map's posteriors, by the meaning that such posteriors had before.
 
-use crate::coverage_map::Evidence;
+use crate::coverage_map::EvidenceKind;
 use crate::histogram::{MAX_BINS, MIN_BINS, PROBABILITY_FLOOR};
 use crate::{CoverageMap, short};
 use serde::{Deserialize, Serialize};
@@ -173,7 +173,7 @@ impl CoverageMap {
         let (mut stored, mut read) = ([0.0; MAX_BINS], [0.0; MAX_BINS]);
         let (stored, read) = (&mut stored[..bins], &mut read[..bins]);
         for (index, evidence) in self.evidence.iter().enumerate() {
-            if *evidence == Evidence::Measured {
+            if *evidence == EvidenceKind::Measured {
                 let cell = index * bins..(index + 1) * bins;
                 stored
                     .iter_mut()

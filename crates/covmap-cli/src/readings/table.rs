@@ -13,11 +13,11 @@ const KINDS: [&str; 4] = ["right", "short", "long", "no echo"];
 
 /// The numbers of readings of each kind, by true distance.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(super) struct Table {
+pub(super) struct KindTable {
     counts: [[u32; KINDS.len()]; ENDS.len()],
 }
 
-impl FromIterator<(f64, Range)> for Table {
+impl FromIterator<(f64, Range)> for KindTable {
     fn from_iter<I: IntoIterator<Item = (f64, Range)>>(readings: I) -> Self {
         let mut table = Self::default();
         for (truth, range) in readings {
@@ -35,8 +35,8 @@ impl FromIterator<(f64, Range)> for Table {
     }
 }
 
-impl Table {
-    /// The columns of [`Table::lines`].
+impl KindTable {
+    /// The columns of [`KindTable::lines`].
     pub(super) const HEADING: &str = "to_m,readings,right,short,long,no_echo";
 
     /// Returns the number of readings.
@@ -63,7 +63,7 @@ impl Table {
     /// Returns the mean log-likelihood of these readings' kinds under the frequencies of another
     /// table \[nats\]. Half a reading is added to each kind of the other table, and no kind is
     /// impossible.
-    pub(super) fn log_likelihood_under(&self, model: &Table) -> f64 {
+    pub(super) fn log_likelihood_under(&self, model: &KindTable) -> f64 {
         let mut sum = 0.0;
         for (counts, expected) in self.counts.iter().zip(&model.counts) {
             let expected = expected.map(|n| f64::from(n) + 0.5);
@@ -76,10 +76,10 @@ impl Table {
 }
 
 /// Returns a panel for each kind.
-pub(super) fn figure(rows: &[(&str, Table)]) -> Figure {
+pub(super) fn figure(rows: &[(&str, KindTable)]) -> Figure {
     let middle = |row: usize| 0.5 * (ENDS[row] + if row == 0 { 0.0 } else { ENDS[row - 1] });
     let panel = |(kind, name): (usize, &&str)| {
-        let series = |(source, table): &(&str, Table)| {
+        let series = |(source, table): &(&str, KindTable)| {
             let point = |row| Some(ChartPoint::new(middle(row), table.shares(row)?[kind]));
             let points = (0..ENDS.len()).filter_map(point).collect();
             Series { name: (*source).to_owned(), points, line: true, marks: true }
@@ -110,7 +110,7 @@ pub(super) fn figure(rows: &[(&str, Table)]) -> Figure {
 mod tests {
     use super::*;
 
-    fn table(readings: &[(f64, Range)]) -> Table {
+    fn table(readings: &[(f64, Range)]) -> KindTable {
         readings.iter().copied().collect()
     }
 
@@ -135,6 +135,6 @@ mod tests {
         let wrong = table(&[(0.7, Range::Echo(0.7)), (0.7, Range::NoEcho), (0.7, Range::NoEcho)]);
         let own = real.log_likelihood_under(&real);
         assert!(own > real.log_likelihood_under(&wrong));
-        assert!(own > real.log_likelihood_under(&Table::default()));
+        assert!(own > real.log_likelihood_under(&KindTable::default()));
     }
 }

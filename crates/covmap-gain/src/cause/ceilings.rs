@@ -14,7 +14,7 @@
 
 use super::fronts::FrontSums;
 use crate::belief::{Belief, lanes_at, padded};
-use crate::evidence::{BlockGains, Evidence, ExcessEvidence};
+use crate::evidence::{BinEvidence, BlockGains, ExcessEvidence};
 use crate::memory::Size;
 use crate::numbers::PAD;
 use crate::numbers::{as_f64, to_f32};
@@ -92,7 +92,7 @@ impl Ceilings {
     pub(super) fn new(
         grid: Grid,
         pairs: [(f64, Vec<(f64, f64)>); PAIRS],
-        evidence: impl Fn((f64, f64), f64) -> Evidence,
+        evidence: impl Fn((f64, f64), f64) -> BinEvidence,
     ) -> Self {
         let looked = pairs.map(|(most, kernels)| {
             let shares = PARTS.iter().map(|part| part * most.max(1e-9));

@@ -8,7 +8,7 @@
 use super::fronts::FrontSums;
 use crate::InformationGain;
 use crate::belief::{Belief, lanes_at, padded};
-use crate::evidence::{BlockGains, Evidence, ExcessEvidence};
+use crate::evidence::{BinEvidence, BlockGains, ExcessEvidence};
 use crate::memory::Size;
 use crate::numbers::PAD;
 use crate::numbers::{as_f64, to_f32};
@@ -54,7 +54,7 @@ impl Polynomials {
         grid: Grid,
         gain: InformationGain,
         largest: f64,
-        evidence: impl Fn(f64) -> Evidence,
+        evidence: impl Fn(f64) -> BinEvidence,
     ) -> Option<Self> {
         let largest = largest.max(1e-9);
         let probes = ProbeHistograms::new(&evidence(largest));

@@ -1,7 +1,7 @@
 //! Eq. (9) as it runs: many cells side by side, in f32.
 
 use crate::ProductParameters;
-use crate::product::Reading;
+use crate::product::ProductReading;
 use covmap::bin_coverage;
 use covmap::lanes::{LANES, Lanes, TOGETHER, exp, flat, ln, map, rows};
 
@@ -22,7 +22,7 @@ impl Terms {
     pub(crate) fn extend(
         &mut self,
         (parameters, resolution): (&ProductParameters, f64),
-        reading: &Reading,
+        reading: &ProductReading,
         distances: impl Iterator<Item = f64>,
     ) {
         for distance in distances {

@@ -2,7 +2,7 @@
 //!
 //! A run that ended early needs few scans and a short path, and must not win by that.
 
-use crate::runs::{Run, Runs};
+use crate::runs::{RecordedRun, Runs};
 use crate::techniques::COMPLETENESS;
 use crate::trial::Trial;
 use covmap_plan::Strategy;
@@ -17,8 +17,9 @@ const MOST_NAMES: usize = 12;
 /// Nine in ten of all runs explored their world, and more than half of the runs of each strategy.
 /// The others are named.
 pub(super) fn explored(runs: &Runs, strategies: &[Strategy]) -> Trial {
-    let all: Vec<&Run> = strategies.iter().flat_map(|strategy| runs.with(*strategy)).collect();
-    let failed: Vec<&Run> = all.iter().copied().filter(|run| !is_explored(run)).collect();
+    let all: Vec<&RecordedRun> =
+        strategies.iter().flat_map(|strategy| runs.with(*strategy)).collect();
+    let failed: Vec<&RecordedRun> = all.iter().copied().filter(|run| !is_explored(run)).collect();
     let most = |strategy: &Strategy| {
         let all = runs.with(*strategy).count();
         2 * runs.with(*strategy).filter(|run| is_explored(run)).count() > all
@@ -43,14 +44,14 @@ pub(super) fn explored(runs: &Runs, strategies: &[Strategy]) -> Trial {
     condition.saying(names(&failed)).saying(cut_short)
 }
 
-fn is_explored(run: &Run) -> bool {
+fn is_explored(run: &RecordedRun) -> bool {
     run.value(COMPLETENESS) >= COMPLETE
 }
 
 /// Returns the names of the failed runs, if any.
-fn names(failed: &[&Run]) -> Option<String> {
-    let name = |run: &&Run| {
-        let Run { world, strategy, start, seed, .. } = run;
+fn names(failed: &[&RecordedRun]) -> Option<String> {
+    let name = |run: &&RecordedRun| {
+        let RecordedRun { world, strategy, start, seed, .. } = run;
         let completeness = run.value(COMPLETENESS);
         format!("{world}, {strategy}, start {start}, seed {seed} ({completeness:.2})")
     };

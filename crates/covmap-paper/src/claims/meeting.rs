@@ -129,7 +129,8 @@ mod tests {
         check(finding, Verdict::Undecided);
         // From three starts of four the curves meet early, which does not make up for the fourth.
         let mut runs = fig_6((20.0, 0.99), 1.0);
-        let cl = |run: &&mut crate::runs::Run| run.strategy == Strategy::Cl && run.start == 3;
+        let cl =
+            |run: &&mut crate::runs::RecordedRun| run.strategy == Strategy::Cl && run.start == 3;
         for run in runs.runs.iter_mut().filter(cl) {
             run.values.insert(PATH.to_owned(), 500.0);
         }

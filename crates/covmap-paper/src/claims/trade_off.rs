@@ -52,7 +52,8 @@ fn advantage(runs: &Runs, weight: f64) -> Option<Estimate> {
         values.iter().sum::<f64>() / n
     };
     let (path, scans) = (cl(PATH), cl(SCANS));
-    let cost = |run: &crate::runs::Run| run.value(PATH) / path + weight * run.value(SCANS) / scans;
+    let cost =
+        |run: &crate::runs::RecordedRun| run.value(PATH) / path + weight * run.value(SCANS) / scans;
     // The costs of each seed alone: the best radius for a seed comes from the others.
     let mut seeds: BTreeMap<u64, Runs> = BTreeMap::new();
     for run in &runs.runs {
@@ -81,7 +82,7 @@ fn advantage(runs: &Runs, weight: f64) -> Option<Estimate> {
 fn best_window(
     runs: &Runs,
     windows: &[Strategy],
-    cost: &impl Fn(&crate::runs::Run) -> f64,
+    cost: &impl Fn(&crate::runs::RecordedRun) -> f64,
 ) -> Option<Strategy> {
     let mean_cost = |window: &Strategy| {
         let costs: Vec<f64> = runs.with(*window).map(cost).filter(|c| c.is_finite()).collect();

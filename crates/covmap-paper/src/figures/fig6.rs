@@ -2,7 +2,7 @@
 
 use crate::crossing::{Point, curve};
 use crate::error::Result;
-use crate::runs::{Run, Runs};
+use crate::runs::{RecordedRun, Runs};
 use covmap_campaign::{PARAMETERS, parameters};
 use covmap_draw::FigureFolder;
 use covmap_draw::{Chart, ChartAxis, ChartPoint, Figure, Series};
@@ -37,7 +37,7 @@ const NUMBERS: [&str; 5] = ["start", "seed", "cut_short", "explored", "path_m"];
 /// The meaning of a hollow mark.
 const HOLLOW: &str = "; hollow: cut short, and to the end both would be larger";
 
-fn row(config: &str, run: &Run) -> Vec<String> {
+fn row(config: &str, run: &RecordedRun) -> Vec<String> {
     let Point { path, share } = point(run);
     let cut_short = u8::from(run.cut_short).to_string();
     [config.to_owned(), format!("\"{}\"", run.strategy)]
@@ -49,7 +49,7 @@ fn row(config: &str, run: &Run) -> Vec<String> {
 }
 
 fn panel(name: &str, runs: &Runs) -> Chart {
-    let of = |is: &dyn Fn(&Strategy) -> bool| -> Vec<&Run> {
+    let of = |is: &dyn Fn(&Strategy) -> bool| -> Vec<&RecordedRun> {
         runs.runs.iter().filter(|run| is(&run.strategy)).collect()
     };
     let discounted = of(&|s| matches!(s, Strategy::Count { half_distance: Some(_), .. }));
@@ -61,8 +61,8 @@ fn panel(name: &str, runs: &Runs) -> Chart {
         line,
         marks: !line,
     };
-    let as_points = |runs: &[&Run]| -> Vec<ChartPoint> {
-        let drawn = |run: &&Run| {
+    let as_points = |runs: &[&RecordedRun]| -> Vec<ChartPoint> {
+        let drawn = |run: &&RecordedRun| {
             let Point { path, share } = point(run);
             ChartPoint { hollow: run.cut_short, ..ChartPoint::new(share, path) }
         };
@@ -84,12 +84,12 @@ fn panel(name: &str, runs: &Runs) -> Chart {
     }
 }
 
-fn point(run: &Run) -> Point {
+fn point(run: &RecordedRun) -> Point {
     Point { path: run.value("path_length_m"), share: run.value("share_explored") }
 }
 
 /// Returns the mean of CL, with the interval of its path.
-fn cross(runs: &[&Run]) -> ChartPoint {
+fn cross(runs: &[&RecordedRun]) -> ChartPoint {
     let points: Vec<Point> = runs.iter().map(|run| point(run)).collect();
     let paths: Vec<f64> = points.iter().map(|p| p.path).collect();
     let shares: Vec<f64> = points.iter().map(|p| p.share).collect();

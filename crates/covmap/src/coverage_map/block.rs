@@ -1,6 +1,6 @@
 //! Multiplying evidence into many cells side by side.
 
-use super::Evidence;
+use super::EvidenceKind;
 use crate::CoverageMap;
 use crate::histogram::{MAX_BINS, PROBABILITY_FLOOR, TIE};
 use crate::lanes::{LANES, Lanes, TOGETHER, flat, ln};
@@ -156,7 +156,7 @@ impl CoverageMap {
     /// If there is no such cell.
     #[inline(always)]
     pub fn is_changeable(&self, index: usize) -> bool {
-        self.evidence[index] != Evidence::Pinned
+        self.evidence[index] != EvidenceKind::Pinned
     }
 
     /// Multiplies evidence into many cells at once, as [`Self::multiply`] does, but in f32. `cells`
@@ -185,8 +185,8 @@ impl CoverageMap {
                 continue;
             }
             let index = *index as usize;
-            if changed_lanes[lane] || self.evidence[index] == Evidence::Unknown {
-                self.evidence[index] = Evidence::Measured;
+            if changed_lanes[lane] || self.evidence[index] == EvidenceKind::Unknown {
+                self.evidence[index] = EvidenceKind::Measured;
                 let before = std::mem::replace(&mut self.entropy[index], entropy[lane]);
                 #[allow(clippy::cast_possible_truncation, reason = "at most 64 bins")]
                 (self.mode_bin[index] = mode[lane] as u8);

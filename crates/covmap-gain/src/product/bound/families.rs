@@ -5,7 +5,7 @@
 //! and behind it for each band of the end; and one of no echo.
 
 use crate::belief::BlockPrior;
-use crate::evidence::{Evidence, ExcessEvidence};
+use crate::evidence::{BinEvidence, ExcessEvidence};
 use crate::numbers::to_f32;
 use crate::probes::ProbeHistograms;
 use covmap::lanes::{LANES, Lanes};
@@ -96,12 +96,12 @@ impl ReadingFamily {
 pub(super) struct FamilyMembers {
     /// The members at its edges: a gain that changes little within the family is largest at one of
     /// them, also where it is next to nothing.
-    corners: Vec<Evidence>,
-    others: Vec<Evidence>,
+    corners: Vec<BinEvidence>,
+    others: Vec<BinEvidence>,
 }
 
 impl FamilyMembers {
-    fn add(&mut self, member: Evidence, is_corner: bool) {
+    fn add(&mut self, member: BinEvidence, is_corner: bool) {
         if is_corner { &mut self.corners } else { &mut self.others }.push(member);
     }
 }
@@ -114,7 +114,8 @@ pub(super) fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> 
     #[allow(clippy::cast_possible_truncation, reason = "below 257")]
     let shifts = (2.0 / sigma_in).ceil().clamp(8.0, 256.0) as i32;
     let mut families = vec![FamilyMembers::default(); NO_ECHO + 1];
-    let echo = |distance: f64, k: usize| Evidence::new(model, distance, Outcome::Echo(ranges[k]));
+    let echo =
+        |distance: f64, k: usize| BinEvidence::new(model, distance, Outcome::Echo(ranges[k]));
     // The first, second, middle and last ring of a band. The second counts because half of the
     // first ring, at the sensor itself, has no distance.
     let band = |band: usize| {
@@ -166,7 +167,7 @@ pub(super) fn families(model: &SensorModel, ranges: &[f64], bands: &[usize]) -> 
     }
     for step in 0..=8 {
         let distance = model.reach(Outcome::NoEcho) * f64::from(step) / 8.0;
-        let evidence = Evidence::new(model, distance, Outcome::NoEcho);
+        let evidence = BinEvidence::new(model, distance, Outcome::NoEcho);
         families[NO_ECHO].add(evidence, step % 4 == 0);
     }
     families

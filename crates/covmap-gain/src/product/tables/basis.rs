@@ -9,7 +9,7 @@
 
 use super::spanning::SpanningSet;
 use crate::belief::{Belief, BlockPrior};
-use crate::evidence::{BlockGains, Evidence, ExcessEvidence};
+use crate::evidence::{BinEvidence, BlockGains, ExcessEvidence};
 use crate::numbers::to_f32;
 use crate::probes::ProbeHistograms;
 use covmap::lanes::{LANES, Lanes};
@@ -58,7 +58,7 @@ impl Basis {
     /// Takes some of these readings into the basis, as many as all of them need.
     pub(crate) fn extend(
         &mut self,
-        readings: &[&Evidence],
+        readings: &[&BinEvidence],
         probes: &ProbeHistograms,
     ) -> MixtureQueue {
         let gains = probes.in_tolerances(readings);
@@ -72,11 +72,11 @@ impl Basis {
     /// more than `most`.
     pub(crate) fn extend_by_few(
         &mut self,
-        readings: &[&Evidence],
+        readings: &[&BinEvidence],
         probes: &ProbeHistograms,
         most: usize,
     ) -> Option<MixtureQueue> {
-        let some: Vec<&Evidence> =
+        let some: Vec<&BinEvidence> =
             readings.iter().step_by(readings.len() / SAMPLE + 1).copied().collect();
         let needed = SpanningSet::of(&probes.in_tolerances(&some), MIXTURE_TOLERANCE).members.len();
         (needed <= most).then(|| self.extend(readings, probes))

@@ -5,7 +5,7 @@
 //! both. It is therefore interpolated by polynomials. The least sufficient number of nodes is
 //! measured on [`ProbeHistograms`] when the tables are made.
 
-use crate::evidence::Evidence;
+use crate::evidence::BinEvidence;
 use crate::numbers::as_f64;
 use crate::probes::ProbeHistograms;
 use std::f64::consts::PI;
@@ -60,7 +60,7 @@ impl Nodes {
         points: &[f64],
         shift: Option<f64>,
         (probes, leniency): (&ProbeHistograms, f64),
-        evidence: impl Fn(f64) -> Evidence,
+        evidence: impl Fn(f64) -> BinEvidence,
     ) -> Self {
         let exact: Vec<Vec<f64>> = points.iter().map(|x| probes.after(&evidence(*x))).collect();
         let allowed = probes.allowed(&exact, leniency);

@@ -5,7 +5,7 @@ use super::beyond::{BeyondOutcomes, Lattice};
 use super::rings::{CellPosition, MOST_LENIENT, RingBuilder, UnmixedRing, unmixed};
 use super::spanning::SpanningSet;
 use crate::Stencil;
-use crate::evidence::Evidence;
+use crate::evidence::BinEvidence;
 use crate::numbers::as_f64;
 use crate::probes::{ProbeHistograms, TOLERANCE};
 use covmap::lanes::TOGETHER;
@@ -76,7 +76,7 @@ impl RangeInterpolation {
         let u: Vec<f64> = histogram.iter().map(|h| h * libm::log(h.max(1e-300))).collect();
         let before = -u.iter().sum::<f64>();
         let gain = |range: f64| {
-            let evidence = Evidence::new(model, cell_distance, Outcome::Echo(range));
+            let evidence = BinEvidence::new(model, cell_distance, Outcome::Echo(range));
             before - evidence.entropy_after(histogram, &u)
         };
         let (low, high) = (ranges[0], ranges[ranges.len() - 1]);
@@ -105,7 +105,7 @@ impl TableErrors {
         model.parameters().update.product()?;
         let (stencil, probes) = (Stencil::new(model, heading), ProbeHistograms::of_model(model));
         let built = unmixed(model, &stencil, &probes);
-        let in_front: Vec<&Evidence> = built.iter().flat_map(UnmixedRing::in_front).collect();
+        let in_front: Vec<&BinEvidence> = built.iter().flat_map(UnmixedRing::in_front).collect();
         let after: Vec<Vec<f64>> = in_front.iter().map(|reading| probes.after(reading)).collect();
         let units = probes.allowed(&after, 1.0);
         let gains: Vec<Vec<f64>> =
@@ -143,7 +143,7 @@ impl TableErrors {
             for (beam, cell, distance) in places {
                 for (k, in_range) in of_outcomes.iter().enumerate() {
                     let range = stencil.ranges[nearest + k];
-                    let evidence = Evidence::new(model, distance, Outcome::Echo(range));
+                    let evidence = BinEvidence::new(model, distance, Outcome::Echo(range));
                     let wanted = probes.in_units(probes.after(&evidence), &units);
                     let of_node = product(in_range, &of_cells[beam][cell]);
                     let interpolated = sum(&of_node, &refs(exact));
@@ -165,7 +165,7 @@ impl TableErrors {
 
 impl UnmixedRing {
     /// Returns the readings of cells in front of the end, which are those of the lattice.
-    fn in_front(&self) -> impl Iterator<Item = &Evidence> {
+    fn in_front(&self) -> impl Iterator<Item = &BinEvidence> {
         let all = self.readings.iter();
         all.filter(|(position, _)| *position == CellPosition::InFront).map(|(_, evidence)| evidence)
     }

@@ -7,7 +7,7 @@
 use super::basis::{Basis, MixtureQueue, ReadingGain};
 use super::beyond::{BeyondOutcomes, Lattice};
 use super::interpolation::Nodes;
-use crate::evidence::Evidence;
+use crate::evidence::BinEvidence;
 use crate::numbers::{as_f64, to_f32};
 use crate::probes::ProbeHistograms;
 use crate::{BeamStencil, Stencil};
@@ -74,7 +74,7 @@ pub(crate) fn rings(model: &SensorModel, stencil: &Stencil) -> (Vec<DistanceRing
     let mut basis = Basis::default();
     let of_position = |position| {
         let readings = built.iter().flat_map(|built| &built.readings);
-        readings.filter(|(p, _)| *p == position).map(|(_, e)| e).collect::<Vec<&Evidence>>()
+        readings.filter(|(p, _)| *p == position).map(|(_, e)| e).collect::<Vec<&BinEvidence>>()
     };
     let mut in_front = basis.extend(&of_position(CellPosition::InFront), &probes);
     let mut at_end = basis.extend_by_few(&of_position(CellPosition::AtEnd), &probes, MOST_AT_END);
@@ -121,7 +121,7 @@ pub(super) struct UnmixedRing {
     pub(super) ring: DistanceRing,
     /// The readings, with those of the lattice among them, and the position of the ring's cells for
     /// each.
-    pub(super) readings: Vec<(CellPosition, Evidence)>,
+    pub(super) readings: Vec<(CellPosition, BinEvidence)>,
     pub(super) lattice: Option<Lattice>,
 }
 
@@ -162,7 +162,7 @@ pub(super) struct RingBuilder<'a> {
     /// All distances of these cells, in ascending order.
     distances: Vec<f64>,
     /// The readings so far, with the position of the ring's cells for each.
-    readings: Vec<(CellPosition, Evidence)>,
+    readings: Vec<(CellPosition, BinEvidence)>,
 }
 
 impl<'a> RingBuilder<'a> {
@@ -198,7 +198,9 @@ impl<'a> RingBuilder<'a> {
         let reaches_no_echo = self.any_cell(ranges, |_| true);
         let no_echo = reaches_no_echo.then(|| {
             let model = self.model;
-            self.smooth(ranges, CellPosition::NoEnd, |d| Evidence::new(model, d, Outcome::NoEcho))
+            self.smooth(ranges, CellPosition::NoEnd, |d| {
+                BinEvidence::new(model, d, Outcome::NoEcho)
+            })
         });
         let reaches_cells = nearest_beyond < ranges && self.any_cell(ranges - 1, |_| true);
         let lattice = reaches_cells.then(|| self.beyond(nearest_beyond));
@@ -241,14 +243,14 @@ impl<'a> RingBuilder<'a> {
         let gamma = model.parameters().update.product().map(|product| product.gamma);
         let shift = gamma.and_then(|gamma| shift(&gamma, middle));
         let ranges = &self.stencil.ranges[nearest..];
-        let at = |range| Evidence::new(model, middle, Outcome::Echo(range));
+        let at = |range| BinEvidence::new(model, middle, Outcome::Echo(range));
         (Nodes::few(ranges, shift, probes, at), shift, middle)
     }
 
     /// Makes the lattice of all outcomes from the `nearest` beyond the ring on.
     fn beyond(&mut self, nearest: usize) -> Lattice {
         let (model, probes) = (self.model, (self.probes, self.leniency));
-        let at = |distance, range| Evidence::new(model, distance, Outcome::Echo(range));
+        let at = |distance, range| BinEvidence::new(model, distance, Outcome::Echo(range));
         let (in_range, ..) = self.in_range(nearest);
         let needed = |range: &f64| {
             Nodes::few(&self.distances, None, probes, |distance| at(distance, *range)).at.len()
@@ -273,12 +275,12 @@ impl<'a> RingBuilder<'a> {
     fn near(&mut self, k: usize) -> OutcomeReadings {
         let (model, outcome) = (self.model, self.stencil.outcome(k));
         if !self.any_cell(k, |d| self.position(d, k) != CellPosition::Behind) {
-            return self.smooth(k, CellPosition::Behind, |d| Evidence::new(model, d, outcome));
+            return self.smooth(k, CellPosition::Behind, |d| BinEvidence::new(model, d, outcome));
         }
         let first = self.readings.len();
         let distances = self.distances.clone();
         for d in &distances {
-            self.readings.push((CellPosition::AtEnd, Evidence::new(model, *d, outcome)));
+            self.readings.push((CellPosition::AtEnd, BinEvidence::new(model, *d, outcome)));
         }
         let mut own = vec![Vec::new(); self.cells.len()];
         for (beam, i) in self.covered(k) {
@@ -295,7 +297,7 @@ impl<'a> RingBuilder<'a> {
         &mut self,
         k: usize,
         position: CellPosition,
-        evidence: impl Fn(f64) -> Evidence,
+        evidence: impl Fn(f64) -> BinEvidence,
     ) -> OutcomeReadings {
         let nodes = Nodes::few(&self.distances, None, (self.probes, self.leniency), &evidence);
         let (first, count) = (self.readings.len(), nodes.at.len());

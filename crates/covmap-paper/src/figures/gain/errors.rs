@@ -21,7 +21,7 @@ const MOST: f64 = 1e-3;
 const COMPARED: usize = 80;
 
 /// A cause of errors in gains.
-struct Row {
+struct ErrorRow {
     what: String,
     color: Rgb,
     /// Measured values; the largest is what counts.
@@ -30,7 +30,7 @@ struct Row {
     allowed: Option<(f64, f64)>,
 }
 
-impl Row {
+impl ErrorRow {
     fn worst(&self) -> f64 {
         self.measured.iter().copied().fold(0.0, f64::max)
     }
@@ -105,7 +105,7 @@ fn draw_axis(drawing: &mut Drawing, (top, bottom): (f64, f64)) {
     drawing.text(text, SMALL, [x, bottom + 31.0], TextAnchor::Middle, VERMILION);
 }
 
-fn draw_row(drawing: &mut Drawing, row: &Row, y: f64) {
+fn draw_row(drawing: &mut Drawing, row: &ErrorRow, y: f64) {
     drawing.text(&row.what, TEXT, [LEFT - 12.0, y + 15.0], TextAnchor::End, Rgb::INK);
     drawing.block([LEFT, y + 3.0], [RIGHT - LEFT, ROW - 6.0], PALE);
     let worst = row.worst();
@@ -151,8 +151,8 @@ fn draw_key(drawing: &mut Drawing, y: f64) {
 }
 
 /// Returns the errors that are zero to the last bit, or bounded for any map.
-fn proved(by_cause: &Moment, by_product: &Moment) -> Result<Vec<Row>> {
-    let row = |what: &str, measured: f64, allowed| Row {
+fn proved(by_cause: &Moment, by_product: &Moment) -> Result<Vec<ErrorRow>> {
+    let row = |what: &str, measured: f64, allowed| ErrorRow {
         what: what.into(),
         color: GREEN,
         measured: vec![measured],
@@ -218,10 +218,10 @@ fn largest(moment: &Moment) -> f64 {
 }
 
 /// Returns the errors of the tables, for the worst of some histograms.
-fn probed(by_cause: &Moment, by_product: &Moment, quick: bool) -> Result<Vec<Row>> {
+fn probed(by_cause: &Moment, by_product: &Moment, quick: bool) -> Result<Vec<ErrorRow>> {
     let errors = TableErrors::probed(&by_product.model, 0.0)
         .ok_or(PaperError::Missing("tables of the update by Eq. (9)"))?;
-    let row = |what: String, measured, allowed| Row {
+    let row = |what: String, measured, allowed| ErrorRow {
         what,
         color: ORANGE,
         measured: vec![measured],
@@ -248,7 +248,7 @@ fn probed(by_cause: &Moment, by_product: &Moment, quick: bool) -> Result<Vec<Row
 }
 
 /// Returns the errors of E\[I\] against the equations as printed.
-fn measured(by_cause: &Moment, by_product: &Moment, quick: bool) -> Vec<Row> {
+fn measured(by_cause: &Moment, by_product: &Moment, quick: bool) -> Vec<ErrorRow> {
     let of = |what: &str, moment: &Moment| {
         let compared = if quick { 4 } else { COMPARED };
         let step = (moment.candidates.len() / compared).max(1);
@@ -258,7 +258,7 @@ fn measured(by_cause: &Moment, by_product: &Moment, quick: bool) -> Vec<Row> {
         };
         let measured: Vec<f64> = some.map(off).collect();
         let what = format!("{what}: {} view-points", measured.len());
-        Row { what, color: BLUE, measured, allowed: None }
+        ErrorRow { what, color: BLUE, measured, allowed: None }
     };
     vec![of("E[I] by Eq. (9)", by_product), of("E[I] by cause", by_cause)]
 }

@@ -17,7 +17,7 @@ const SUMS: f64 = 120.0;
 const MARKED: f64 = 0.6;
 
 /// An outcome, as the sums see it.
-struct Row {
+struct RangeRow {
     probability: f64,
     /// L(k).
     any: f64,
@@ -31,14 +31,14 @@ pub(super) fn draw(moment: &Moment, seen: Seen) -> Drawing {
     let cells = beam.cells.len();
     let row = |k: usize| {
         let parts: Vec<Part> = (0..cells).map(|i| part(moment, seen, k, i)).collect();
-        Row {
+        RangeRow {
             probability: likelihood.probability(k),
             any: moment.any_cause(seen, k),
             front: parts.iter().take_while(|part| **part == Part::InFront).count(),
             parts,
         }
     };
-    let rows: Vec<Row> = (0..moment.stencil.outcomes()).map(row).collect();
+    let rows: Vec<RangeRow> = (0..moment.stencil.outcomes()).map(row).collect();
     let height = count(rows.len()) * ROW;
     let mut drawing = Drawing::new(
         "S_q(i): one sum over the outcomes serves each cell in front",
@@ -85,8 +85,8 @@ pub(super) fn draw(moment: &Moment, seen: Seen) -> Drawing {
 }
 
 /// Draws p_k and L(k) beside the rows.
-fn draw_bars(drawing: &mut Drawing, rows: &[Row], top: f64) {
-    let value: fn(&Row) -> f64 = |row| row.probability;
+fn draw_bars(drawing: &mut Drawing, rows: &[RangeRow], top: f64) {
+    let value: fn(&RangeRow) -> f64 = |row| row.probability;
     let columns = [("p_k", value, BLUE), ("L(k)", |row| row.any, GREY)];
     let mut left = LEFT + MATRIX + 26.0;
     for (name, value, color) in columns {
@@ -106,7 +106,7 @@ fn draw_bars(drawing: &mut Drawing, rows: &[Row], top: f64) {
 }
 
 /// Returns S_q of a cell: Σ p_k · L(k)^q over the outcomes with the cell in front.
-fn power_sum(rows: &[Row], i: usize, q: i32) -> f64 {
+fn power_sum(rows: &[RangeRow], i: usize, q: i32) -> f64 {
     rows.iter()
         .filter(|row| i < row.front)
         .map(|row| row.probability * libm::pow(row.any, f64::from(q)))
@@ -114,7 +114,7 @@ fn power_sum(rows: &[Row], i: usize, q: i32) -> f64 {
 }
 
 /// Draws the first sums under the columns, each as a share of its largest.
-fn draw_sums(drawing: &mut Drawing, rows: &[Row], (cells, width): (usize, f64), top: f64) {
+fn draw_sums(drawing: &mut Drawing, rows: &[RangeRow], (cells, width): (usize, f64), top: f64) {
     drawing.block([LEFT, top], [MATRIX, SUMS], PALE);
     let mut y = top + 22.0;
     for (q, color) in [(1, BLUE), (2, VERMILION)] {
@@ -154,7 +154,7 @@ fn draw_sums(drawing: &mut Drawing, rows: &[Row], (cells, width): (usize, f64), 
 /// Marks the column of one cell, and its sum.
 fn mark(
     drawing: &mut Drawing,
-    rows: &[Row],
+    rows: &[RangeRow],
     (cells, width): (usize, f64),
     (top, height): (f64, f64),
 ) {
