@@ -5,7 +5,7 @@ use covmap::{CoverageMap, Grid, Raster};
 use covmap_explore::{Limits, Mission, Run, explore};
 use covmap_fit::{BodyRecord, Example};
 use covmap_io::read_ron;
-use covmap_lab::{Config, SimulatedRobot, Truth};
+use covmap_lab::{Config, FitPlan, SimulatedRobot, Truth};
 use covmap_plan::{BodyEvidence, Strategy};
 use covmap_world::{Scenario, Surface, World};
 use nalgebra::Point2;
@@ -71,4 +71,30 @@ fn scored_are_the_measured_cells_without_those_under_the_body_and_deep_in_walls(
     let mut truth = Truth::new(&world, &mission);
     truth.coverage = Raster::from_fn(grid, |cell| [0.0, 0.0, 0.3, 1.0, 1.0][cell.x as usize]);
     assert_eq!(truth.measured_cells(&map), cells[2..4]);
+}
+
+/// Fits a file anew; the parameters must be those of the configuration that it made, to a millionth: what is
+/// written in a configuration is what this program fits, not what an earlier one did.
+#[test]
+fn paper_ron_is_what_its_fit_file_makes() {
+    let plan = FitPlan::read(&root().join("configs/fit/paper.ron")).unwrap();
+    let training = plan.examples(&plan.file.training, &()).unwrap();
+    let fitted = plan.search(&training, &()).unwrap().parameters;
+    let shipped: Config = read_ron(root().join("configs/paper.ron")).unwrap();
+    for axis in &plan.file.axes {
+        let [made, shipped] =
+            [&fitted, &shipped.model].map(|model| axis.parameter.get(model).unwrap());
+        assert!(
+            (made - shipped).abs() < 1e-6,
+            "{:?}: {made}, but {shipped} is shipped",
+            axis.parameter
+        );
+    }
+    // All other parameters are those that the fit began with.
+    let mut begun = plan.begin.config.model.clone();
+    for axis in &plan.file.axes {
+        axis.set(&mut begun, axis.place(&shipped.model).unwrap());
+    }
+    assert_eq!(begun.footprint, shipped.model.footprint);
+    assert_eq!(begun.bins, shipped.model.bins);
 }
