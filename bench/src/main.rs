@@ -72,11 +72,7 @@ pub(crate) struct Measuring<'a> {
 }
 
 fn main() -> ExitCode {
-    let done = run(&Bench::parse());
-    if let Err(error) = &done {
-        say::error(error);
-    }
-    if done.is_ok() && say::finish().is_ok() { ExitCode::SUCCESS } else { ExitCode::FAILURE }
+    covmap_cli::end(run(&Bench::parse()).map(|()| ExitCode::SUCCESS))
 }
 
 fn run(arguments: &Bench) -> Result<()> {

@@ -123,7 +123,7 @@ fn dependencies(package: &str, section: &str) -> BTreeSet<String> {
     found
 }
 
-fn packages() -> BTreeSet<String> {
+pub(crate) fn packages() -> BTreeSet<String> {
     let folders = std::fs::read_dir(root().join("crates")).unwrap();
     let folders = folders.map(|entry| entry.unwrap()).filter(|e| e.path().is_dir());
     folders.map(|entry| entry.file_name().into_string().unwrap()).collect()

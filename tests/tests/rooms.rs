@@ -1,7 +1,7 @@
 //! The structure of the crates: no cycle of modules that use each other, and no file that is too
 //! long.
 
-use crate::architecture::without_tests;
+use crate::architecture::{packages, without_tests};
 use crate::docs::source::paths_of_tree;
 use crate::{root, rust_files};
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,8 +14,7 @@ const LARGEST_SHARE: f64 = 0.2;
 
 /// Returns the source folders of all packages.
 fn sources() -> Vec<PathBuf> {
-    let crates = std::fs::read_dir(root().join("crates")).unwrap();
-    let crates = crates.map(|entry| entry.unwrap().path()).filter(|path| path.is_dir());
+    let crates = packages().into_iter().map(|name| root().join("crates").join(name));
     let apart = ["bench", "tests", "xtask"].map(|name| root().join(name));
     crates.chain(apart).map(|package| package.join("src")).collect()
 }

@@ -8,8 +8,6 @@ use covmap_cli::terminal::{Terminal, say};
 use covmap_draw::FigureFolder;
 use covmap_lab::Watch;
 use covmap_paper::{Audience, PaperError, Session, Steps, drawing, gain_figures};
-use std::fmt::Display;
-use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
@@ -47,8 +45,7 @@ fn draw(
     let progress = Progress::new(*quiet);
     let terminal = Terminal { progress: &progress, interrupt: &interrupt };
     let watch = Onlooker { terminal, quiet: *quiet };
-    let all = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-    let jobs = jobs.unwrap_or(all);
+    let jobs = covmap_cli::jobs(*jobs);
     let session = Session::new(out.clone(), jobs, *quick, worlds, &watch);
     let folder = FigureFolder::create(out, force.replace())?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(jobs.get()).build()?;
@@ -70,24 +67,15 @@ struct Onlooker<'a> {
     quiet: bool,
 }
 
-impl Watch for Onlooker<'_> {
-    fn tell(&self, progress: &dyn Display) {
-        self.terminal.tell(progress);
-    }
-
-    fn begin(&self, part: &str) {
-        self.terminal.begin(part);
-    }
-
-    fn is_stopped(&self) -> bool {
-        self.terminal.is_stopped()
-    }
-}
-
 impl Audience for Onlooker<'_> {
+    fn watch(&self) -> &dyn Watch {
+        &self.terminal
+    }
+
     fn line(&self, text: &str) {
+        self.terminal.progress.finish();
         if !self.quiet {
-            self.terminal.progress.aside(|| say::line(text));
+            say::line(text);
         }
     }
 

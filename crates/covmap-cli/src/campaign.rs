@@ -1,12 +1,12 @@
 //! `campaign` and `collect`: run the campaign of a file, and merge the folders of several machines.
 
 use crate::arguments::{Campaign as Arguments, Collect};
+use crate::jobs;
 use crate::terminal::interrupt::{self, Interrupt};
 use crate::terminal::progress::Bar;
 use crate::terminal::say;
 use anyhow::Result;
 use covmap_campaign::{Campaign, Collected, Options, Plan, Step};
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -24,8 +24,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<ExitCode> {
         return Ok(ExitCode::SUCCESS);
     }
     let out = arguments.out.clone().unwrap_or_else(|| default_folder(&arguments.file));
-    let all = std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN);
-    let jobs = arguments.jobs.unwrap_or(all);
+    let jobs = jobs(arguments.jobs);
     let options =
         Options { jobs, shard: arguments.shard, out: &out, stop: &|| interrupt.is_pressed() };
     let bar = Bar::new(&campaign.name, arguments.quiet);

@@ -14,9 +14,7 @@ use covmap_fit::{
 };
 use covmap_io::csv;
 use covmap_io::{FileError, OutputFolder, write_json};
-use covmap_lab::Config;
-use covmap_lab::Watch;
-use covmap_lab::{FitFile, FitPlan, Source};
+use covmap_lab::{Config, FitFile, FitPlan, Source, Watch};
 use covmap_model::ModelParameters;
 use covmap_statistics::{stream, uniform};
 use serde::Serialize;

@@ -1,21 +1,15 @@
 //! `completions`: the completions of a shell for `covmap`.
 
-use crate::arguments::{Command, Completions};
+use crate::arguments::{Arguments, Command, Completions};
+use crate::terminal::say;
 use anyhow::Result;
-use clap::{CommandFactory, Parser};
+use clap::CommandFactory;
 use std::process::ExitCode;
 
-/// The program as a shell sees it.
-#[derive(Parser)]
-#[command(name = "covmap")]
-struct Covmap {
-    #[command(subcommand)]
-    _command: Command,
-}
-
 pub(crate) fn run(arguments: &Completions) -> Result<ExitCode> {
-    let mut text = Vec::new();
-    clap_complete::generate(arguments.shell, &mut Covmap::command(), "covmap", &mut text);
-    std::io::Write::write_all(&mut std::io::stdout(), &text)?;
+    let mut script = Vec::new();
+    let mut program = Arguments::<Command>::command();
+    clap_complete::generate(arguments.shell, &mut program, "covmap", &mut script);
+    say::as_it_is(&script);
     Ok(ExitCode::SUCCESS)
 }

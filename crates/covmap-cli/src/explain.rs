@@ -6,9 +6,7 @@ use crate::explain_picture;
 use crate::terminal::say;
 use anyhow::Result;
 use covmap_io::write_file;
-use covmap_lab::results::certificate;
-use covmap_lab::{Moment, replay};
-use covmap_lab::{Trace, in_folder, read_header};
+use covmap_lab::{Moment, Trace, in_folder, read_header, replay, results::certificate};
 use covmap_plan::{CandidateRecord, Strategy};
 use std::process::ExitCode;
 

@@ -2,8 +2,7 @@
 
 use covmap::{Cell, CoverageMap, Grid, Raster};
 use covmap_draw::{ColorMap, Key, Marker, Picture, Rgb};
-use covmap_lab::Moment;
-use covmap_lab::results::certain_coverage;
+use covmap_lab::{Moment, results::certain_coverage};
 use nalgebra::Point2;
 
 /// The opacity of the gains over the map.

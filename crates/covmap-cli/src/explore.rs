@@ -12,12 +12,11 @@ use anyhow::Result;
 use covmap_explore::{Ending, Limits, Run};
 use covmap_io::Digest;
 use covmap_io::MapCounts;
-use covmap_lab::TraceWriter;
-use covmap_lab::files;
-use covmap_lab::files::{Remarks, WorldFile};
-use covmap_lab::results;
-use covmap_lab::results::{Task, Written};
-use covmap_lab::{Config, CutOff, Experiment, Summary};
+use covmap_lab::{
+    Config, CutOff, Experiment, Summary, TraceWriter,
+    files::{self, Remarks, WorldFile},
+    results::{self, Task, Written},
+};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;

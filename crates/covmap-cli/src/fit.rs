@@ -9,10 +9,7 @@ use crate::terminal::interrupt::{self, Interrupt};
 use crate::terminal::progress::Progress;
 use anyhow::Result;
 use covmap_io::{OutputFolder, write_json, write_ron};
-use covmap_lab::Config;
-use covmap_lab::files;
-use covmap_lab::results::reliability;
-use covmap_lab::{FitPlan, Source};
+use covmap_lab::{Config, FitPlan, Source, files, results::reliability};
 use std::path::Path;
 use std::process::ExitCode;
 

@@ -44,6 +44,7 @@ use arguments::Arguments;
 use clap::Subcommand;
 use covmap_lab::memory;
 use std::io::ErrorKind;
+use std::num::NonZeroUsize;
 use std::process::ExitCode;
 use terminal::say;
 
@@ -64,10 +65,20 @@ pub fn run_with<C: Subcommand>(name: &str, act: impl FnOnce(C) -> Result<ExitCod
         Err(told) => return ended(say::clap(told)),
     };
     memory::allow(memory.memory);
-    ended(act(command).unwrap_or_else(|error| {
+    end(act(command))
+}
+
+/// Ends a program: says what went wrong, and returns the exit code.
+pub fn end(done: Result<ExitCode>) -> ExitCode {
+    ended(done.unwrap_or_else(|error| {
         say::error(&error);
         ExitCode::from(BAD_INPUT)
     }))
+}
+
+/// Returns the number of runs at the same time: by default one for each core.
+pub fn jobs(asked: Option<NonZeroUsize>) -> NonZeroUsize {
+    asked.or(std::thread::available_parallelism().ok()).unwrap_or(NonZeroUsize::MIN)
 }
 
 impl Command {

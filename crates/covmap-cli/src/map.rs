@@ -14,12 +14,9 @@ use crate::terminal::progress::Progress;
 use anyhow::Result;
 use covmap::CoverageMap;
 use covmap_io::{MapCounts, OutputFolder, write_json};
-use covmap_lab::Config;
-use covmap_lab::files;
-use covmap_lab::memory;
-use covmap_lab::results;
-use covmap_lab::{LabError, Reader};
-use covmap_lab::{Log, LogOverview, Mapper, Stride};
+use covmap_lab::{
+    Config, LabError, Log, LogOverview, Mapper, Reader, Stride, files, memory, results,
+};
 use covmap_log::{LogOptions, Sensor, SensorAccount, Skipped};
 use covmap_model::{Footprint, FootprintRule, SensorModel};
 use covmap_plan::BodyEvidence;

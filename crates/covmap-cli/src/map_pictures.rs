@@ -3,8 +3,10 @@
 use crate::map_summary::MapSummary;
 use covmap::CoverageMap;
 use covmap_draw::Picture;
-use covmap_lab::Mapper;
-use covmap_lab::results::{draw_coverage, draw_entropy, draw_occupancy, draw_path};
+use covmap_lab::{
+    Mapper,
+    results::{draw_coverage, draw_entropy, draw_occupancy, draw_path},
+};
 use nalgebra::Point2;
 
 /// The content of the pictures.

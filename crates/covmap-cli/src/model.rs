@@ -6,8 +6,7 @@ use crate::output;
 use crate::terminal::say;
 use anyhow::{Result, bail};
 use covmap_io::write_file;
-use covmap_lab::echo_table;
-use covmap_lab::files;
+use covmap_lab::{echo_table, files};
 use std::path::Path;
 use std::process::ExitCode;
 

@@ -211,6 +211,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
             let (path, stays) = (decision.path.clone(), decision.path.is_empty());
             self.decide(decision)?;
             let arrives = self.drive(&path)?;
+            self.arrivals += usize::from(arrives);
             if (stays || (arrives && self.is_due())) && !self.is_budget_spent() {
                 self.scan()?;
             }
@@ -218,17 +219,14 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
         ControlFlow::Continue(self.ending())
     }
 
-    /// Whether a scan is due where the robot arrives: always, but where scans are made every so many metres
-    /// of way and nowhere else.
-    fn is_due(&mut self) -> bool {
+    /// Whether a scan is due where the robot arrives. With [`InPlace::AtViewPoints`] a robot that measures on
+    /// the way does so at a fixed distance only; all other robots measure wherever they arrive.
+    fn is_due(&self) -> bool {
         let Mission { config, limits, .. } = self.mission;
         let every =
             limits.while_driving.filter(|_| config.planner.in_place == InPlace::AtViewPoints);
-        self.arrivals += 1;
-        let is_due = every.is_none_or(|every| self.since_scan >= every - ROUNDING)
-            || self.arrivals >= MOST_ARRIVALS;
-        self.arrivals *= usize::from(!is_due);
-        is_due
+        every.is_none_or(|every| self.since_scan >= every - ROUNDING)
+            || self.arrivals >= MOST_ARRIVALS
     }
 
     /// The ending of a run after which no cell is open.
@@ -272,7 +270,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
         let time = self.path_length / self.mission.config.robot.speed;
         let scan = Scan { pose, time, ranges };
         done(self.explorer.see(&scan))?;
-        self.since_scan = 0.0;
+        (self.since_scan, self.arrivals) = (0.0, 0);
         self.scans.push(scan.clone());
         self.report(Event::Scan { number: self.scans.len() - 1, scan })
     }

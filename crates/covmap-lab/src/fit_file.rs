@@ -108,10 +108,19 @@ pub struct FitPlan {
 }
 
 impl Named {
-    fn read(path: &Path, named: &Path, resolution: f64) -> Result<Self> {
+    /// Reads a configuration that the fit's file at `path` names, with the parameters that it sets.
+    fn read(
+        path: &Path,
+        named: &Path,
+        resolution: f64,
+        overrides: &BTreeMap<String, Value>,
+    ) -> Result<Self> {
         let file = beside(path, named);
         let mut config: Config = read_ron(&file)?;
         config.resolution = resolution;
+        for (parameter, value) in overrides {
+            config = config.overridden(parameter, value).map_err(about(path))?;
+        }
         files::check(&config, &file)?;
         Ok(Self { config, file })
     }
@@ -124,14 +133,9 @@ impl FitPlan {
     /// If anything is wrong with these files.
     pub fn read(path: &Path) -> Result<Self> {
         let file: FitFile = read_ron(path)?;
-        let begin = Named::read(path, &file.config, file.resolution)?;
+        let begin = Named::read(path, &file.config, file.resolution, &BTreeMap::new())?;
         let explorer = file.explorer.as_ref().unwrap_or(&file.config);
-        let mut explorer = Named::read(path, explorer, file.resolution)?;
-        for (parameter, value) in &file.explorer_overrides {
-            let overridden = explorer.config.overridden(parameter, value);
-            explorer.config = overridden.map_err(about(path))?;
-        }
-        files::check(&explorer.config, &explorer.file)?;
+        let explorer = Named::read(path, explorer, file.resolution, &file.explorer_overrides)?;
         if begin.config.robot != explorer.config.robot {
             return Err(about(path)(Fault::OtherRobot {
                 explorer: explorer.file,

@@ -51,9 +51,9 @@ impl Fitting {
             file.training.iter_mut().chain(&mut file.held_out).for_each(shorten);
         }
         let (file, config) = (&plan.file, &plan.begin.config);
-        let made = |sources: &[Source]| plan.examples(sources, session.watch);
+        let made = |sources: &[Source]| plan.examples(sources, session.watch());
         let (training, held_out) = (made(&file.training)?, made(&file.held_out)?);
-        let fitted = plan.search(&training, session.watch)?;
+        let fitted = plan.search(&training, session.watch())?;
         let difference = |example: &Example| -> Result<f64> {
             let example = std::slice::from_ref(example);
             let after = file.weighting.objective(&score(example, &fitted.parameters)?);

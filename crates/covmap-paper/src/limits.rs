@@ -2,9 +2,9 @@
 
 use crate::error::{PaperError, Result};
 use crate::session::Session;
-use covmap_explore::{Ending, Event, Limits as Budget, View, explore};
+use covmap_explore::{Ending, Limits as Budget};
 use covmap_io::parse_ron;
-use covmap_lab::{Config, SimulatedRobot};
+use covmap_lab::{Config, Experiment};
 use covmap_plan::Strategy;
 use covmap_sonar::Scan;
 use covmap_world::{Scenario, World};
@@ -90,10 +90,8 @@ fn trace(
     let mut config = Config { resolution: SIDE, ..config.clone() };
     config.planner.strategy = strategy;
     let budget = Budget { max_scans: Some(most), ..Budget::default() };
-    let mission = covmap_lab::mission(world, &config, None, budget)?;
-    let mut robot = SimulatedRobot::new(world, &config, 1)?;
-    let on = &mut |_: &Event, _: &View<'_>| session.watch.flow();
-    let run = explore(&mission, &mut robot, on)?;
+    let experiment = Experiment::new(world, &config, None, budget, 1)?;
+    let run = experiment.explore(world, &mut |_, _| session.watch().flow())?;
     Ok(Trace { scans: run.scans, ending: run.ending })
 }
 
@@ -117,6 +115,9 @@ mod tests {
     }
 
     impl Audience for Stopped {
+        fn watch(&self) -> &dyn Watch {
+            self
+        }
         fn line(&self, _: &str) {}
         fn campaign(&self, _: &str, run: &mut dyn FnMut(&crate::Steps<'_>)) {
             run(&|_| {});

@@ -4,14 +4,17 @@ use crate::error::{PaperError, Result};
 use covmap_campaign::{Campaign, Options, RunRecord, Seeds, Setting, Shard, Starts, Step, run};
 use covmap_lab::Watch;
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Mutex;
 
 /// The receiver of each step of a campaign.
 pub type Steps<'a> = dyn Fn(&Step) + Sync + 'a;
 
 /// The caller of the experiments, which receives their progress and may stop them.
-pub trait Audience: Watch {
+pub trait Audience: Sync {
+    /// Returns the observer of work that takes long.
+    fn watch(&self) -> &dyn Watch;
+
     /// Receives a message that stays.
     fn line(&self, text: &str);
 
@@ -21,7 +24,7 @@ pub trait Audience: Watch {
     /// Returns whether the work is to end; asked between two parts, because the next part may not
     /// ask.
     fn is_stopped_between(&self) -> bool {
-        self.is_stopped()
+        self.watch().is_stopped()
     }
 }
 
@@ -29,10 +32,9 @@ pub trait Audience: Watch {
 pub struct Session<'a> {
     /// Whether the session is quick, for a look instead of a result.
     pub quick: bool,
-    /// The observer.
-    pub watch: &'a dyn Audience,
     /// Worlds of the campaign of other worlds that come from files.
     pub worlds: &'a [(String, PathBuf)],
+    audience: &'a dyn Audience,
     jobs: NonZeroUsize,
     out: PathBuf,
     /// The runs so far: a row for each setting of each campaign.
@@ -57,19 +59,14 @@ impl<'a> Session<'a> {
         jobs: NonZeroUsize,
         quick: bool,
         worlds: &'a [(String, PathBuf)],
-        watch: &'a dyn Audience,
+        audience: &'a dyn Audience,
     ) -> Self {
-        Self { quick, watch, worlds, jobs, out, ran: Mutex::default() }
+        Self { quick, audience, worlds, jobs, out, ran: Mutex::default() }
     }
 
-    /// Returns the folder for results.
-    pub fn out(&self) -> &Path {
-        &self.out
-    }
-
-    /// Returns the number of runs at the same time.
-    pub fn jobs(&self) -> NonZeroUsize {
-        self.jobs
+    /// Returns the observer of work that takes long.
+    pub fn watch(&self) -> &dyn Watch {
+        self.audience.watch()
     }
 
     /// Returns the folder of a campaign.
@@ -84,10 +81,10 @@ impl<'a> Session<'a> {
     pub fn run(&self, campaign: Campaign) -> Result<Series> {
         let dir = self.folder(&campaign);
         self.tell(&format!("{}: {}", campaign.name, dir.display()));
-        let stop = &|| self.watch.is_stopped();
+        let stop = &|| self.watch().is_stopped();
         let options = Options { jobs: self.jobs, shard: Shard::WHOLE, out: &dir, stop };
         let mut records = None;
-        self.watch
+        self.audience
             .campaign(&campaign.name, &mut |tell| records = Some(run(&campaign, &options, tell)));
         let records = records.ok_or(PaperError::Missing("a campaign"))??;
         self.check()?;
@@ -99,7 +96,7 @@ impl<'a> Session<'a> {
 
     /// Reports that another task takes time now.
     pub fn tell(&self, text: &str) {
-        self.watch.line(text);
+        self.audience.line(text);
     }
 
     /// Returns the runs so far, for the report: a row for each setting of each campaign.
@@ -109,7 +106,7 @@ impl<'a> Session<'a> {
 
     /// Returns an error after Ctrl-C; finished runs stay, and the next session uses them.
     pub fn check(&self) -> Result<()> {
-        if self.watch.is_stopped_between() { Err(PaperError::Interrupted) } else { Ok(()) }
+        if self.audience.is_stopped_between() { Err(PaperError::Interrupted) } else { Ok(()) }
     }
 }
 

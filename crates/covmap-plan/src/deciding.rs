@@ -116,25 +116,22 @@ impl Planner {
     fn fill_deciding_gains(&mut self, contest: &mut Contest<'_>) {
         let all = self.view_points(&contest.records);
         self.take_gains(contest);
-        let uses_gain = contest.scoring.uses_gain();
         self.gains.take_exceeded();
-        if uses_gain && !contest.needs_all_gains() {
-            // Eq. (16) divides by the largest gain, as does the report of IG: the largest comes first.
-            let largest = |contest: &Contest<'_>| {
-                let gains = contest.records.iter().map(|r| r.gain.abs());
-                GAIN_TOLERANCE * gains.fold(0.0, f64::max)
-            };
-            self.settle(contest, &all, 1, |record| record.gain, largest);
+        if !contest.needs_all_gains() {
+            if contest.scoring.uses_gain() {
+                // Eq. (16) divides by the largest gain, as does the report of IG: the largest comes first.
+                let largest = |contest: &Contest<'_>| {
+                    let gains = contest.records.iter().map(|r| r.gain.abs());
+                    GAIN_TOLERANCE * gains.fold(0.0, f64::max)
+                };
+                self.settle(contest, &all, 1, |record| record.gain, largest);
+            }
+            let off = |contest: &Contest<'_>| contest.uncertainty();
+            self.settle(contest, &all, REPORTED, |record| record.score, off);
         }
-        self.settle(
-            contest,
-            &all,
-            REPORTED,
-            |record| record.score,
-            |contest| contest.uncertainty(),
-        );
-        // What the gains turn out to be may be less than bounds are good for.
-        if uses_gain && (self.gains.take_exceeded() || contest.needs_all_gains()) {
+        // The evaluated gains may turn out not to be positive, and bounds then do not tell the best.
+        let exceeded = contest.scoring.uses_gain() && self.gains.take_exceeded();
+        if exceeded || contest.needs_all_gains() {
             self.gains.refresh_gains(&all);
             self.take_gains(contest);
         }

@@ -106,9 +106,10 @@ impl<'a> Contest<'a> {
         self.scoring.uncertainty(&self.records, GAIN_TOLERANCE).unwrap_or(0.0)
     }
 
-    /// Whether bounds of gains do not tell who may be the best.
+    /// Whether bounds of gains do not tell which candidates may be the best.
     pub(crate) fn needs_all_gains(&self) -> bool {
-        self.scoring.uncertainty(&self.records, GAIN_TOLERANCE).is_none()
+        let known = self.scoring.uncertainty(&self.records, GAIN_TOLERANCE);
+        self.scoring.uses_gain() && known.is_none()
     }
 
     /// Passes over a candidate.

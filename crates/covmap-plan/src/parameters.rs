@@ -100,8 +100,8 @@ pub enum InPlace {
     /// Its own cell is a candidate like any other.
     #[default]
     Always,
-    /// Not while it measures on the way: then scans are made every so many metres of way, and a target is
-    /// another cell. Its own cell is a candidate only if there is no other.
+    /// The robot measures in place at view-points only. A robot that measures on the way does so at a fixed
+    /// distance, and its targets are other cells; its own cell is a candidate only if there is no other.
     AtViewPoints,
 }
 

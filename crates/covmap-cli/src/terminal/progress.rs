@@ -64,7 +64,7 @@ impl Progress {
         let (Some(line), Ok(mut next)) = (&self.line, self.next.lock()) else { return };
         let now = Instant::now();
         if now >= *next {
-            line.set_message(text());
+            set(line, text());
             *next = Instant::now() + PAUSE.max(now.elapsed() * PATIENCE);
         }
     }
@@ -72,24 +72,24 @@ impl Progress {
     /// Reports that another task takes time now.
     pub fn say(&self, text: &str) {
         if let Some(line) = &self.line {
-            line.set_message(escaped(text).to_string());
+            set(line, escaped(text).to_string());
         }
     }
 
-    /// Calls a function while the terminal is free of the line.
-    pub fn aside<T>(&self, what: impl FnOnce() -> T) -> T {
-        match &self.line {
-            Some(line) => line.suspend(what),
-            None => what(),
-        }
-    }
-
-    /// Clears the line.
+    /// Clears the line; another message begins it anew.
     pub fn finish(&self) {
         if let Some(line) = &self.line {
             line.finish_and_clear();
         }
     }
+}
+
+/// Shows a message, also after the line was cleared.
+fn set(line: &ProgressBar, message: String) {
+    if line.is_finished() {
+        line.reset();
+    }
+    line.set_message(message);
 }
 
 /// A bar with the number of finished runs of a campaign, their measurements, and the time left.

@@ -18,6 +18,11 @@ pub fn line(text: impl Display) {
     keep(writeln!(io::stdout(), "{}", tame(text)));
 }
 
+/// Prints bytes for another program; [`finish`] tells whether that worked.
+pub fn as_it_is(bytes: &[u8]) {
+    keep(io::stdout().write_all(bytes));
+}
+
 /// Prints the message of clap, and returns the exit code.
 pub fn clap(mut told: clap::Error) -> ExitCode {
     let typed = |(kind, value): (ContextKind, &ContextValue)| match value {

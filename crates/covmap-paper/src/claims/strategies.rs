@@ -43,12 +43,13 @@ const MARGIN: f64 = 0.1;
 /// IG_CL(1.0) is as good as IG if it is no farther from it than this share of the way from IG to CL.
 const SPAN_SHARE: f64 = 0.2;
 
-/// Tests claim 10 (Fig. 7 (a)): IG needs the fewest measurements. Others may need as few, within a margin: the paper draws
-/// IG_CL with a large α beside it.
+/// Tests claim 10 (Fig. 7 (a)): IG needs the fewest measurements. Other strategies may need as few, within a
+/// margin: the paper draws IG_CL with a large α beside it.
 pub fn claim_10(runs: &Runs) -> Finding {
     let ratios = against(runs, SCANS, Strategy::Ig);
+    let strategies: Vec<Strategy> = ratios.iter().map(|(strategy, _)| *strategy).collect();
     let trials = trials(ratios, ("scans", Strategy::Ig), Bound::Above(1.0 - MARGIN));
-    let note = by_strategy(&trials);
+    let note = by_strategy(&strategies, &trials);
     Finding::new(
         10,
         "Fig. 7a: no strategy needs fewer scans than IG, by more than a tenth",
@@ -57,15 +58,12 @@ pub fn claim_10(runs: &Runs) -> Finding {
     .note(note)
 }
 
-/// For which strategies a test alone holds, for which it fails, and for which neither is known, without a
-/// correction for their number.
-fn by_strategy(trials: &[Trial]) -> String {
+/// Names the strategies for which their test alone holds, those for which it fails, and those for which neither
+/// is known. The tests are not corrected for their number.
+fn by_strategy(strategies: &[Strategy], trials: &[Trial]) -> String {
     let names = |is: &dyn Fn(&Trial) -> bool| -> String {
-        let name = |trial: &Trial| {
-            let (_, strategies) = trial.what.split_once(", ").unwrap_or(("", &trial.what));
-            strategies.split_once(" / ").map_or(strategies, |(name, _)| name).to_owned()
-        };
-        let names: Vec<String> = trials.iter().filter(|t| is(t)).map(name).collect();
+        let of = strategies.iter().zip(trials).filter(|(_, trial)| is(trial));
+        let names: Vec<String> = of.map(|(strategy, _)| strategy.to_string()).collect();
         if names.is_empty() { "none".to_owned() } else { names.join(", ") }
     };
     let half = 0.5 * LEVEL;
@@ -108,8 +106,9 @@ pub fn claim_12(runs: &Runs) -> Finding {
 /// Tests claim 13 (Fig. 7 (b)): CL drives the shortest path.
 pub fn claim_13(runs: &Runs, driving: &Runs) -> Finding {
     let ratios = against(runs, PATH, Strategy::Cl);
+    let strategies: Vec<Strategy> = ratios.iter().map(|(strategy, _)| *strategy).collect();
     let trials = trials(ratios, ("path", Strategy::Cl), Bound::Above(1.0));
-    let note = by_strategy(&trials);
+    let note = by_strategy(&strategies, &trials);
     let finding = Finding::new(
         13,
         "Fig. 7b: CL drives the shortest path (at view-points only)",

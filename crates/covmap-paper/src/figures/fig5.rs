@@ -10,8 +10,7 @@ use covmap_campaign::{Job, Plan, RunKey, Setting, driven, load_paths};
 use covmap_draw::FigureFolder;
 use covmap_draw::Picture;
 use covmap_explore::Run;
-use covmap_lab::results::Pictures;
-use covmap_lab::{Experiment, Truth};
+use covmap_lab::{Experiment, Truth, results::Pictures};
 use covmap_plan::Strategy;
 use covmap_world::World;
 use nalgebra::Point2;
@@ -54,7 +53,7 @@ fn repeat(plan: &Plan, job: &Job, session: &Session<'_>, dir: &Path) -> Result<(
     let key = &job.planned.key;
     let recorded = load_paths(dir, key)?;
     let (world, experiment) = (&plan.cases[job.case].world, plan.experiment(job)?);
-    let mut run = experiment.explore(world, &mut |_, _| session.watch.flow())?;
+    let mut run = experiment.explore(world, &mut |_, _| session.watch().flow())?;
     session.check()?;
     if driven(&run.trajectory) != recorded.driven {
         return Err(PaperError::OtherRun { dir: dir.to_owned(), key: Box::new(key.clone()) });

@@ -15,8 +15,7 @@ mod suffix;
 use crate::built_in;
 use crate::error::Result;
 use covmap_draw::FigureFolder;
-use covmap_lab::Config;
-use covmap_lab::files;
+use covmap_lab::{Config, files};
 use covmap_plan::Strategy;
 use moment::Moment;
 

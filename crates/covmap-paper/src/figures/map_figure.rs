@@ -7,8 +7,7 @@ use covmap_campaign::{NamedWorld, Paths};
 use covmap_draw::FigureFolder;
 use covmap_draw::{Key, Marker, Picture, Rgb, coverage_color};
 use covmap_io::read_ron;
-use covmap_lab::files;
-use covmap_lab::results::mark_cut_short;
+use covmap_lab::{files, results::mark_cut_short};
 use covmap_world::{Surface, World};
 use nalgebra::Point2;
 
