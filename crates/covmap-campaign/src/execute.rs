@@ -58,7 +58,7 @@ fn measure(
     let mut last = ThreadTime::now();
     let run = experiment.explore(world, &mut |event, view| {
         let now = ThreadTime::now();
-        hasher.add(event);
+        hasher.add_event(event);
         match event {
             Event::Decision { .. } => deciding += now.duration_since(last),
             Event::Scan { scan, .. } => tally.add(view.map, scan),

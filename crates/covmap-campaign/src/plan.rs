@@ -152,6 +152,8 @@ impl Plan {
     pub fn experiment(&self, job: &Job) -> Result<Experiment> {
         let (case, key) = (&self.cases[job.case], &job.planned.key);
         let mission = case.mission(job.strategy, case.starts[key.start])?;
+        // Nobody reads the decisions of a campaign.
+        let mission = Mission { explains: false, ..mission };
         Ok(Experiment { mission, sonar: case.config.sonar, seed: key.seed })
     }
 }

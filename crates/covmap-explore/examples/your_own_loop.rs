@@ -29,6 +29,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         outside: Raster::filled(grid, false),
         start: Isometry2::translation(4.1, 3.1),
         limits: Limits::default(),
+        explains: true,
     };
     let mut explorer = Explorer::new(&mission)?;
     for _ in 0..10 {

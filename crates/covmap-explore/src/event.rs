@@ -57,6 +57,18 @@ impl TraceHasher {
         self.0.update(b"\n");
     }
 
+    /// Adds an event, without the five best candidates of a decision: they explain what was chosen, and runs
+    /// that explain less are the same runs.
+    pub fn add_event(&mut self, event: &Event) {
+        match event {
+            Event::Decision { number, from, decision } => {
+                let decision = Decision { best: Vec::new(), ..decision.clone() };
+                self.add(&Event::Decision { number: *number, from: *from, decision });
+            }
+            Event::Scan { .. } | Event::Bump { .. } | Event::End { .. } => self.add(event),
+        }
+    }
+
     /// Adds bytes that are not a line of the trace, such as those of the belief.
     pub fn add_bytes(&mut self, bytes: &[u8]) {
         self.0.update(bytes);

@@ -26,7 +26,7 @@ use nalgebra::Point2;
 /// let config = Parameters { resolution: 0.2, robot, model, planner };
 /// let grid = Grid::new(Point2::origin(), 0.2, 20, 20)?;
 /// let (outside, start) = (Raster::filled(grid, false), Isometry2::translation(2.1, 2.1));
-/// let mission = Mission { config, grid, outside, start, limits: Limits::default() };
+/// let mission = Mission { config, grid, outside, start, limits: Limits::default(), explains: true };
 ///
 /// let mut explorer = Explorer::new(&mission)?;
 /// explorer.see(&Scan { pose: start, time: 0.0, ranges: vec![Range::Echo(1.5); 24] })?;
@@ -95,8 +95,9 @@ impl Explorer {
             scans: 0,
             happened: Vec::new(),
         };
-        if mission.limits.while_driving.is_some() {
-            explorer.planner.measure_while_driving();
+        explorer.planner.explain(mission.explains);
+        if let Some(every) = mission.limits.while_driving {
+            explorer.planner.measure_while_driving(every);
         }
         explorer.moved(at);
         explorer.planner.stand_on(cell);

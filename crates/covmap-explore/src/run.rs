@@ -3,7 +3,7 @@
 use crate::{Ending, Event, Explorer, Mission, MissionError, Robot, Sensed, standing_place};
 use covmap::{Cell, CoverageMap, Raster};
 use covmap_model::BodyEvent;
-use covmap_plan::{CellStatus, Decision, InPlace, Planner, Promise, Reach, Scoring, turns};
+use covmap_plan::{CellStatus, Decision, Planner, Promise, Reach, Scoring, turns};
 use covmap_sonar::{Drive, Range, Scan};
 use nalgebra::{Isometry2, Point2};
 use std::error::Error;
@@ -106,12 +106,6 @@ pub fn explore_by<R: Robot>(
     Circle::new(mission, robot, hook, Some(strategy))?.finished()
 }
 
-/// Ways that differ by less are the same \[m\].
-const ROUNDING: f64 = 1e-9;
-/// After this number of arrivals without a scan the robot measures in any case, so that a run ends even if
-/// scans are to be farther apart than there is way to drive.
-const MOST_ARRIVALS: usize = 1000;
-
 /// Reason why a run stops.
 enum Stop {
     /// The hook stopped it.
@@ -147,8 +141,6 @@ struct Circle<'a, R, H> {
     cramped: bool,
     /// Distance that the robot drove since the last scan [m].
     since_scan: f64,
-    /// Where it arrived since, without measuring.
-    arrivals: usize,
     scans: Vec<Scan>,
     trajectory: Vec<Point2<f64>>,
     path_length: f64,
@@ -176,7 +168,6 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
             settled: false,
             cramped: false,
             since_scan: 0.0,
-            arrivals: 0,
             scans: Vec::new(),
             path_length: 0.0,
             decisions: 0,
@@ -211,22 +202,11 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
             let (path, stays) = (decision.path.clone(), decision.path.is_empty());
             self.decide(decision)?;
             let arrives = self.drive(&path)?;
-            self.arrivals += usize::from(arrives);
-            if (stays || (arrives && self.is_due())) && !self.is_budget_spent() {
+            if (stays || arrives) && !self.is_budget_spent() {
                 self.scan()?;
             }
         }
         ControlFlow::Continue(self.ending())
-    }
-
-    /// Whether a scan is due where the robot arrives. With [`InPlace::AtViewPoints`] a robot that measures on
-    /// the way does so at a fixed distance only; all other robots measure wherever they arrive.
-    fn is_due(&self) -> bool {
-        let Mission { config, limits, .. } = self.mission;
-        let every =
-            limits.while_driving.filter(|_| config.planner.in_place == InPlace::AtViewPoints);
-        every.is_none_or(|every| self.since_scan >= every - ROUNDING)
-            || self.arrivals >= MOST_ARRIVALS
     }
 
     /// The ending of a run after which no cell is open.
@@ -270,7 +250,7 @@ impl<'a, R: Robot, H: FnMut(&Event, &View<'_>) -> ControlFlow<()>> Circle<'a, R,
         let time = self.path_length / self.mission.config.robot.speed;
         let scan = Scan { pose, time, ranges };
         done(self.explorer.see(&scan))?;
-        (self.since_scan, self.arrivals) = (0.0, 0);
+        self.since_scan = 0.0;
         self.scans.push(scan.clone());
         self.report(Event::Scan { number: self.scans.len() - 1, scan })
     }

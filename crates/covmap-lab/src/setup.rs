@@ -87,7 +87,7 @@ pub fn mission(
         return Err(SetupError::StartOccupied { x: at.x, y: at.y, radius, clearance });
     }
     let outside = Raster::from_fn(grid, |cell| !extent.holds(grid.center(cell)));
-    Ok(Mission { config: config.parameters(), grid, outside, start, limits })
+    Ok(Mission { config: config.parameters(), grid, outside, start, limits, explains: true })
 }
 
 /// The rectangle to explore.

@@ -73,7 +73,8 @@ impl TraceHeader {
             end = next;
         }
         let Self { grid, start, limits, .. } = *self;
-        let mission = Mission { config: self.config.parameters(), grid, outside, start, limits };
+        let config = self.config.parameters();
+        let mission = Mission { config, grid, outside, start, limits, explains: true };
         mission.validate()?;
         Ok(mission)
     }

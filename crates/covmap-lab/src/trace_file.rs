@@ -68,7 +68,7 @@ impl TraceWriter {
 
     /// Writes an event; when this returns, a decision or the end is in the file.
     pub fn event(&mut self, event: &Event) -> Result<(), FileError> {
-        self.hasher.add(event);
+        self.hasher.add_event(event);
         self.lines.write(event)?;
         match event {
             Event::Decision { .. } | Event::End { .. } => self.lines.flush(),
@@ -76,7 +76,7 @@ impl TraceWriter {
         }
     }
 
-    /// Finishes the file; returns the hash of all lines and of the belief at their end.
+    /// Finishes the file; returns the hash of the run.
     pub fn finish(mut self, belief: &CoverageMap) -> Result<String, FileError> {
         self.lines.sync()?;
         self.hasher.add_bytes(&belief.to_bytes());

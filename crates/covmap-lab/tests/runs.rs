@@ -5,7 +5,7 @@ use covmap_explore::{
     Ending, Event, Limits, Mission, RecordedRobot, Run, TraceHasher, View, explore, explore_by,
 };
 use covmap_lab::{Accuracy, Config, SetupError, SimulatedRobot, TraceHeader, Truth};
-use covmap_plan::{CandidateRecord, CellStatus, Strategy};
+use covmap_plan::{CandidateRecord, CellStatus, Reason, Strategy};
 use covmap_statistics::{stream, uniform};
 use covmap_world::{Extent, Obstacle, Scenario, Shape, Surface, World};
 use proptest::prelude::*;
@@ -138,6 +138,36 @@ fn alpha_zero_gives_the_trace_of_closest_location() {
         events.into_iter().filter_map(target).collect::<Vec<_>>()
     };
     assert_eq!(targets(Strategy::IgCl { alpha: 0.0 }), targets(Strategy::Cl));
+}
+
+#[test]
+fn a_run_that_explains_less_is_the_same_run() {
+    let world = world(Vec::new());
+    for strategy in [Strategy::Cl, Strategy::IgCl { alpha: 0.3 }] {
+        let mut config = config(strategy);
+        config.planner.reason = Reason::InSight;
+        let mut gains = 0.0;
+        let [told, untold] = [true, false].map(|explains| {
+            let limits = Limits { max_scans: Some(30), ..Limits::default() };
+            let mission = covmap_lab::mission(&world, &config, None, limits).unwrap();
+            let mission = Mission { explains, ..mission };
+            let mut robot = SimulatedRobot::new(&world, &config, 3).unwrap();
+            let mut hash = TraceHasher::default();
+            explore(&mission, &mut robot, &mut |event, _| {
+                hash.add_event(event);
+                if let Event::Decision { decision, .. } = event {
+                    gains = decision.best[0].gain;
+                }
+                ControlFlow::Continue(())
+            })
+            .unwrap();
+            (hash.finish(), gains)
+        });
+        assert_eq!(told.0, untold.0, "{strategy}");
+        assert!(told.1 > 0.0);
+        // IG_CL needs the gains.
+        assert_eq!(untold.1 > 0.0, strategy != Strategy::Cl);
+    }
 }
 
 #[test]

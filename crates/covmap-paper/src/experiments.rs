@@ -93,11 +93,8 @@ fn ablated(session: &Session<'_>) -> Result<Campaign> {
     if session.quick {
         campaign.name.push_str("-quick");
         campaign.starts = Starts::Given;
-        // Quick: coarse cells, and all runs cut short. Settings with fine cells, and settings that
-        // run to their end with strategies of their own, would repeat the first setting.
-        campaign.settings.retain(|setting| {
-            setting.overrides.contains_key("resolution") && setting.strategies.is_none()
-        });
+        // Quick: coarse cells, and all runs cut short.
+        campaign.settings.retain(|setting| !setting.overrides.contains_key("resolution"));
         campaign.worlds.iter_mut().for_each(|world| world.resolution = Some(0.2));
         campaign.settings.iter_mut().for_each(|setting| setting.max_scans = Some(QUICK_SCANS));
     }

@@ -22,11 +22,28 @@ impl Page {
         let _ = writeln!(self.body, "<h{level}>{}</h{level}>", escaped(text));
     }
 
+    /// Adds a mark that links of the page can lead to.
+    pub(super) fn anchor(&mut self, id: &str) {
+        let _ = writeln!(self.body, "<a id=\"{id}\"></a>");
+    }
+
+    /// Adds links in a row: texts with their targets.
+    pub(super) fn links(&mut self, before: &str, links: &[(String, String)]) {
+        let link = |(text, to): &(String, String)| {
+            format!("<a href=\"{}\">{}</a>", escaped(to).replace('"', "&quot;"), escaped(text))
+        };
+        let links: Vec<String> = links.iter().map(link).collect();
+        if !links.is_empty() {
+            let _ = writeln!(self.body, "<p>{}{}</p>", escaped(before), links.join(" · "));
+        }
+    }
+
     pub(super) fn paragraph(&mut self, text: &str) {
         let _ = writeln!(self.body, "<p>{}</p>", escaped(text));
     }
 
-    /// Adds a table. A row whose first cell is a verdict's class has the colour of the verdict.
+    /// Adds a table. Verdicts have a colour; a text `#place` is a link to the place on the page, and shows
+    /// what follows the last hyphen of its name.
     pub(super) fn table(&mut self, columns: &[&str], rows: &[Vec<String>]) {
         let cells = |tag: &str, cells: &mut dyn Iterator<Item = &str>| {
             let cell = |text: &str| {
@@ -36,7 +53,12 @@ impl Page {
                     "undecided" => " class=\"undecided\"",
                     _ => "",
                 };
-                format!("<{tag}{class}>{}</{tag}>", escaped(text))
+                let shown = escaped(text);
+                let shown = match text.strip_prefix('#').and_then(|place| place.rsplit_once('-')) {
+                    Some((_, name)) => format!("<a href=\"{shown}\">{}</a>", escaped(name)),
+                    None => shown,
+                };
+                format!("<{tag}{class}>{shown}</{tag}>")
             };
             cells.map(cell).collect::<String>()
         };
@@ -84,9 +106,12 @@ mod tests {
     #[test]
     fn text_is_escaped_and_verdicts_are_coloured() {
         let mut page = Page::default();
-        page.table(&["H < ε"], &[vec!["not reproduced".to_owned()]]);
+        page.table(&["H < ε"], &[vec!["not reproduced".to_owned()], vec!["#claim-5".to_owned()]]);
+        page.links("See ", &[("a < b".to_owned(), "figure\"1.csv".to_owned())]);
         let html = page.finish("a & b");
         assert!(html.contains("<th>H &lt; ε</th>") && html.contains("<title>a &amp; b</title>"));
         assert!(html.contains("<td class=\"not\">not reproduced</td>"));
+        assert!(html.contains("<td><a href=\"#claim-5\">5</a></td>"));
+        assert!(html.contains("<p>See <a href=\"figure&quot;1.csv\">a &lt; b</a></p>"));
     }
 }

@@ -22,10 +22,12 @@ mod partial_cells;
 mod ranking;
 mod report;
 mod runs;
+mod sections;
 mod session;
 mod tables;
 mod techniques;
 pub mod trial;
+mod why;
 
 pub use error::{PaperError, Result};
 pub use figures::gain::write as gain_figures;
@@ -58,6 +60,7 @@ pub fn paper(
     seconds: &dyn Fn() -> f64,
 ) -> Result<()> {
     check(session)?;
+    report::power().iter().for_each(|text| session.tell(text));
     report::clear(output)?;
     let [paper, b21r] = evidence(session, output)?;
     let ablation = ablation(session)?;

@@ -5,12 +5,14 @@ use crate::error::Result;
 use crate::experiments::QUICK_SCANS;
 use crate::figures::fig5;
 use crate::html::Page;
+use crate::sections::{SECTIONS, Section, of_the_paper};
 use crate::session::{RAN, Series};
 use crate::tables::{self, Table};
-use crate::trial::{Judged, Trial, Verdict, digits, shown};
+use crate::trial::{FIRST_LEVEL, Judged, LEVEL, POWER, Trial, Verdict, digits, shown};
 use covmap_campaign::VERSION;
 use covmap_draw::FigureFolder;
 use covmap_io::{MAX_FILE, read_text};
+use covmap_statistics::detectable;
 use serde::Serialize;
 use std::env::consts::{ARCH, OS};
 
@@ -35,6 +37,10 @@ struct Line<'a> {
     claim: u32,
     statement: &'a str,
     verdict: Verdict,
+    /// The number or the words of the paper.
+    paper: &'static str,
+    /// Why the verdict is as it is.
+    why: String,
     figures: Vec<String>,
     test: Test<'a>,
     /// The same with b21r.ron, which decides nothing.
@@ -44,6 +50,8 @@ struct Line<'a> {
 #[derive(Serialize)]
 struct Test<'a> {
     rule: &'static str,
+    /// The p-value by itself; none for an exact claim.
+    raw_p: Option<f64>,
     /// The p-value, adjusted by Holm over all claims; none for an exact claim.
     p: Option<f64>,
     trials: &'a [Trial],
@@ -62,30 +70,14 @@ const RULE: &str = "all trials must hold; Student's t on the standard error of a
                     groups that are all alike, decides nothing; Holm over all claims of the \
                     configuration at .05";
 
-/// The figures in the order of the paper; the report shows the figures that exist.
-const FIGURES: [(&str, &[&str]); 7] = [
-    ("Fig. 1: occupancy and coverage of a cell that is covered 20 %", &["figure1"]),
-    ("Fig. 2: its posterior", &["figure2"]),
-    ("Fig. 3: the sensor model", &["figure3"]),
-    (
-        "Fig. 5: maps of the corridor: (a) counting once, (b) CL on coverage maps, (c) extended counting",
-        &["figure5a", "figure5b", "figure5c", "figure5a-b21r", "figure5b-b21r", "figure5c-b21r"],
-    ),
-    ("Fig. 6: scan counting up to n", &["figure6"]),
-    (
-        "Fig. 7: the strategies; (c) path of IG, (d) path of CL",
-        &["figure7", "figure7c", "figure7d", "figure7-b21r", "figure7c-b21r", "figure7d-b21r"],
-    ),
-    ("Claim 17: other worlds", &["worlds", "worlds-b21r"]),
-];
-
 /// Removes the files of an earlier report from the folder, which keeps the report from showing old
 /// figures.
 pub(super) fn clear(output: &FigureFolder) -> Result<()> {
-    let figures = FIGURES.iter().flat_map(|(_, names)| names.iter());
-    let kinds = |name: &&str| ["svg", "png", "csv"].map(|kind| format!("{name}.{kind}"));
-    let rest = ["table1.csv", "claims.json", "report.html"].map(str::to_owned);
-    for name in figures.flat_map(kinds).chain(rest) {
+    let figures = SECTIONS.iter().flat_map(|section| section.figures);
+    let figures = figures.flat_map(|name| ["svg", "png"].map(|kind| format!("{name}.{kind}")));
+    let numbers = SECTIONS.iter().flat_map(|section| section.numbers);
+    let rest = ["claims.json", "report.html"].map(str::to_owned);
+    for name in figures.chain(numbers.map(|name| format!("{name}.csv"))).chain(rest) {
         output.remove(&name)?;
     }
     Ok(())
@@ -109,22 +101,42 @@ impl Report {
         let mut page = Page::default();
         page.heading(1, title);
         self.introduce(&mut page);
+        contents(&mut page);
         self.verdicts(&mut page);
-        self.details(&mut page);
-        for (heading, names) in FIGURES {
-            page.heading(2, heading);
-            for name in names {
-                let svg = read_text(output.path(&format!("{name}.svg")), MAX_FILE);
-                svg.into_iter().for_each(|svg| page.drawing(&svg));
-            }
-            if heading.starts_with("Fig. 5") {
-                self.table_1(&mut page);
-            }
+        for section in &SECTIONS {
+            page.anchor(section.id);
+            page.heading(2, section.heading);
+            self.part(&mut page, section, output);
         }
         self.beyond(&mut page);
-        page.heading(2, "What was run");
-        page.table(&RAN, &self.ran);
+        self.methods(&mut page);
         page.finish(title)
+    }
+
+    fn part(&self, page: &mut Page, section: &Section, output: &FigureFolder) {
+        let numbers = section.numbers.iter().map(|name| format!("{name}.csv"));
+        let numbers = numbers.filter(|file| output.path(file).exists());
+        let numbers: Vec<_> = numbers.map(|file| (file.clone(), file)).collect();
+        page.paragraph(&format!("Made by: {}", section.command));
+        page.links("Numbers: ", &numbers);
+        for name in section.figures {
+            let svg = read_text(output.path(&format!("{name}.svg")), MAX_FILE);
+            svg.into_iter().for_each(|svg| page.drawing(&svg));
+        }
+        match section.id {
+            "table-1" => self.table_1(page),
+            "ablation" => {
+                page.paragraph(ABLATION);
+                let (columns, rows) = tables::ablation(&self.ablation);
+                page.table(&columns, &rows);
+            }
+            _ => {}
+        }
+        for (paper, b21r) in self.columns[0].iter().zip(&self.columns[1]) {
+            if section.claims.contains(&paper.finding.claim) {
+                claim(page, paper, b21r);
+            }
+        }
     }
 
     fn introduce(&self, page: &mut Page) {
@@ -141,62 +153,70 @@ impl Report {
                  claims must stay undecided so; this is no result."
             ));
         }
-        page.paragraph(
-            "configs/paper.ron decides the verdicts; configs/b21r.ron, with our additions, is a second column. What the \
-             campaigns set otherwise, such as the side of a cell, stands under What was run; σ and γ were fitted at .1 m. \
-             Nothing was tuned for a claim, and thresholds were written before results were seen. The unit is a paired (start, \
-             seed). Tests: Student's t on the standard error of a bootstrap that draws whole starts; a claim needs all its \
-             tests, and pays for the others by Holm's correction. What rests on fewer than three groups, or on groups that \
-             are all alike, decides nothing. Where the robot did not explore its world in more than one of ten of the runs \
-             that a claim compares, nothing is decided, and these runs are named.",
-        );
+        let of = |verdict| self.columns[0].iter().filter(|j| j.verdict == verdict).count();
+        page.paragraph(&format!(
+            "Of {} claims {} are reproduced, {} are not, and {} are undecided, with configs/paper.ron, which decides. \
+             configs/b21r.ron, the default of covmap, is a second column: it updates the map by cause and has other \
+             additions of ours.",
+            self.columns[0].len(),
+            of(Verdict::Reproduced),
+            of(Verdict::NotReproduced),
+            of(Verdict::Undecided),
+        ));
     }
 
     fn verdicts(&self, page: &mut Page) {
+        page.anchor("verdicts");
         page.heading(2, "Verdicts");
         let row = |(paper, b21r): (&Judged, &Judged)| {
+            let ours = paper.deciding().map_or("–".to_owned(), |trial| {
+                if trial.exact { trial.bound.clone() } else { shown(trial.value, trial.interval) }
+            });
             vec![
-                paper.finding.claim.to_string(),
+                format!("#claim-{}", paper.finding.claim),
                 paper.finding.statement.to_owned(),
+                of_the_paper(paper.finding.claim).to_owned(),
+                ours,
                 paper.verdict.to_string(),
+                paper.why(),
                 b21r.verdict.to_string(),
             ]
         };
         let rows: Vec<Vec<String>> =
             self.columns[0].iter().zip(&self.columns[1]).map(row).collect();
-        page.table(&["claim", "statement", "paper.ron", "b21r.ron"], &rows);
+        let columns = [
+            "claim",
+            "statement",
+            "the paper",
+            "ours, with 95 % interval",
+            "paper.ron",
+            "why",
+            "b21r.ron",
+        ];
+        page.table(&columns, &rows);
         page.paragraph(
-            "Claim 18, that every run ends, is a test of the planner and has no verdict.",
+            "Ours is the number on which the verdict rests; each claim's part has all of them. Claim 18, that every run ends, \
+             is a test of the planner and has no verdict.",
         );
     }
 
-    fn details(&self, page: &mut Page) {
-        page.heading(2, "Tests and figures");
-        for (paper, b21r) in self.columns[0].iter().zip(&self.columns[1]) {
-            page.heading(3, &format!("Claim {}: {}", paper.finding.claim, paper.verdict));
-            page.paragraph(paper.finding.statement);
-            for (name, judged) in [("paper.ron", paper), ("b21r.ron", b21r)] {
-                let p =
-                    judged.p.map_or("no chance in it".to_owned(), |p| format!("p = {}", digits(p)));
-                page.paragraph(&format!("{name}: {} ({p})", judged.verdict));
-                let row = |trial: &Trial| {
-                    let value = shown(trial.value, trial.interval);
-                    let p = [trial.p_holds, trial.p_fails].map(digits);
-                    let [holds, fails] =
-                        if trial.exact { ["–", "–"].map(str::to_owned) } else { p };
-                    let what = [Some(&trial.what), trial.reason.as_ref()];
-                    let what = what.into_iter().flatten().cloned().collect::<Vec<_>>().join(": ");
-                    vec![what, value, trial.bound.clone(), holds, fails]
-                };
-                let rows: Vec<Vec<String>> = judged.finding.trials.iter().map(row).collect();
-                page.table(&["test", "value [95 %]", "must be", "p it is not", "p it is"], &rows);
-                page.list(&judged.finding.notes);
-            }
-        }
+    fn methods(&self, page: &mut Page) {
+        page.anchor("methods");
+        page.heading(2, "How it was tested");
+        page.paragraph(
+            "Nothing was tuned for a claim, and thresholds were written before results were seen. The unit is a paired run: \
+             all strategies from one start. Tests: Student's t on the standard error of a bootstrap over starts; a claim \
+             needs all its tests, and pays for the others by Holm's correction. What rests on fewer than three groups, or on \
+             groups that are all alike, decides nothing. Where the robot did not explore its world in more than one of ten \
+             of the runs that a claim compares, nothing is decided, and these runs are named. Each claim shows both p-values: \
+             its own, and the one after Holm's correction, which decides at .05.",
+        );
+        page.list(&power());
+        page.heading(3, "What was run");
+        page.table(&RAN, &self.ran);
     }
 
     fn table_1(&self, page: &mut Page) {
-        page.heading(3, "Table 1");
         page.paragraph(
             "Paper: coverage maps 89.1 m, 0 %; counting 26.6 m, 21 %; extended counting 90.6 m, 1.5 %. The cells are the same \
              for all techniques: those that can be seen from where the robot can stand.",
@@ -212,6 +232,7 @@ impl Report {
     }
 
     fn beyond(&self, page: &mut Page) {
+        page.anchor("beyond");
         page.heading(2, "Beyond the paper");
         page.paragraph(
             "Maps are compared over one set of cells for all runs in a world: what can be seen from where the robot \
@@ -227,19 +248,94 @@ impl Report {
             table(&heading("Accuracy of the final map"), tables::accuracy(runs));
             table(&heading("What it costs, and the time of a decision"), tables::cost(runs));
         }
-        table("One reading changed at a time, on a small world", tables::ablation(&self.ablation));
+    }
+}
+
+/// Text above the ablation.
+const ABLATION: &str = "The first row is configs/paper.ron, the last are configs/b21r.ron. Each row between changes one thing; together they \
+     are what differs between the two columns of verdicts. Errors are of the most likely coverage (mode), as the paper's \
+     maps show it, and of the expected coverage (mean).";
+
+/// Returns what the starts of the campaigns can find, as it is known before any run.
+pub(super) fn power() -> Vec<String> {
+    let of = |(starts, what): (usize, &str)| {
+        let level = |level: f64| detectable(starts, level, POWER).map_or("–".to_owned(), digits);
+        format!(
+            "{starts} starts ({what}) find a mean that is {} standard deviations of a start off its limit in {:.0} % of all \
+             cases at the strictest step of Holm's correction, {} at .05 alone",
+            level(FIRST_LEVEL),
+            100.0 * POWER,
+            level(0.5 * LEVEL)
+        )
+    };
+    [(20, "Fig. 7, Table 1"), (5, "Fig. 6, other worlds")].map(of).to_vec()
+}
+
+/// Adds links to the parts of the page.
+fn contents(page: &mut Page) {
+    let link = |text: &str, id: &str| (text.to_owned(), format!("#{id}"));
+    let short = |section: &Section| {
+        let name = section.heading.split(':').next().unwrap_or(section.heading);
+        link(name, section.id)
+    };
+    let mut links = vec![link("Verdicts", "verdicts")];
+    links.extend(SECTIONS.iter().map(short));
+    links.extend([link("Beyond the paper", "beyond"), link("How it was tested", "methods")]);
+    page.links("", &links);
+}
+
+/// Adds a claim with its tests, with both configurations.
+fn claim(page: &mut Page, paper: &Judged, b21r: &Judged) {
+    page.anchor(&format!("claim-{}", paper.finding.claim));
+    page.heading(3, &format!("Claim {}: {}", paper.finding.claim, paper.verdict));
+    page.paragraph(paper.finding.statement);
+    page.paragraph(&format!("The paper: {}.", of_the_paper(paper.finding.claim)));
+    for (name, judged) in [("paper.ron", paper), ("b21r.ron", b21r)] {
+        let p = match (judged.raw_p, judged.p) {
+            (Some(raw), Some(p)) => format!("p = {}, corrected {}", digits(raw), digits(p)),
+            _ => "no chance in it".to_owned(),
+        };
+        page.paragraph(&format!("{name}: {} ({p}). {}", judged.verdict, judged.why()));
+        let row = |trial: &Trial| {
+            let value = shown(trial.value, trial.interval);
+            let p = [trial.p_holds, trial.p_fails].map(digits);
+            let [holds, fails] = if trial.exact { ["–", "–"].map(str::to_owned) } else { p };
+            let what = [Some(&trial.what), trial.reason.as_ref()];
+            let what = what.into_iter().flatten().cloned().collect::<Vec<_>>().join(": ");
+            let groups = trial.groups.map_or("–".to_owned(), |groups| groups.to_string());
+            let needed = trial.groups_needed.map_or("–".to_owned(), |n| digits(n.ceil()));
+            vec![what, value, trial.bound.clone(), holds, fails, groups, needed]
+        };
+        let rows: Vec<Vec<String>> = judged.finding.trials.iter().map(row).collect();
+        let columns = [
+            "test",
+            "value [95 %]",
+            "must be",
+            "p it is not",
+            "p it is",
+            "groups",
+            "groups for 80 %",
+        ];
+        page.table(&columns, &rows);
+        page.list(&judged.finding.notes);
     }
 }
 
 /// Returns the line of a claim with both configurations; `claims::all` gives both in the same
 /// order.
 fn line<'a>(first: &'a Judged, second: &'a Judged) -> Line<'a> {
-    let test =
-        |judged: &'a Judged| Test { rule: RULE, p: judged.p, trials: &judged.finding.trials };
+    let test = |judged: &'a Judged| Test {
+        rule: RULE,
+        raw_p: judged.raw_p,
+        p: judged.p,
+        trials: &judged.finding.trials,
+    };
     Line {
         claim: first.finding.claim,
         statement: first.finding.statement,
         verdict: first.verdict,
+        paper: of_the_paper(first.finding.claim),
+        why: first.why(),
         figures: figures(first),
         test: test(first),
         b21r: Second { verdict: second.verdict, figures: figures(second), test: test(second) },

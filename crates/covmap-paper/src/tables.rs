@@ -76,6 +76,7 @@ pub(super) fn ablation(series: &Series) -> Table {
         "explored",
         "H > .65",
         "error of the mode",
+        "error of the mean",
     ];
     let metrics = [
         "scans",
@@ -84,7 +85,8 @@ pub(super) fn ablation(series: &Series) -> Table {
         "wall_recall",
         "share_explored",
         "share_uncertain",
-        "mae_observable",
+        "mae_mode",
+        "mae_mean",
     ];
     let rows = series.campaign.settings.iter().flat_map(|setting| {
         let runs = Runs::of(&series.campaign, &setting.name, &series.records);

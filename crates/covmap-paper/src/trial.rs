@@ -77,6 +77,8 @@ pub struct Judged {
     pub finding: Finding,
     /// The verdict.
     pub verdict: Verdict,
+    /// The p-value of the verdict by itself, two-sided; `None` for an exact claim.
+    pub raw_p: Option<f64>,
     /// The p-value of the verdict, adjusted by Holm over all claims of the column; `None` for an
     /// exact claim.
     pub p: Option<f64>,
@@ -85,9 +87,9 @@ pub struct Judged {
 /// At this level a claim is decided.
 pub(crate) const LEVEL: f64 = 0.05;
 /// The probability with which a test is to find what there is.
-const POWER: f64 = 0.8;
-/// The claims of a column, of which Holm's first step takes account.
-const CLAIMS: f64 = 20.0;
+pub(crate) const POWER: f64 = 0.8;
+/// The level of each side of a test in Holm's first step, over the 20 claims of a column.
+pub(crate) const FIRST_LEVEL: f64 = 0.5 * LEVEL / 20.0;
 /// A number that rests on fewer independent groups than this decides nothing.
 const FEWEST_GROUPS: usize = 3;
 /// A standard error below this share of the number is rounding.
@@ -158,6 +160,10 @@ impl Trial {
         Self { p_fails: 1.0, ..Self::fact(what, holds) }
     }
 
+    pub(crate) fn is_unmet_condition(&self) -> bool {
+        self.exact && self.p_holds >= 1.0 && self.p_fails >= 1.0
+    }
+
     /// Returns a test that cannot speak against the claim: a claim that is not confirmed is
     /// undecided.
     pub fn confirming(self) -> Self {
@@ -204,7 +210,7 @@ impl Finding {
     /// Returns whether a condition is not met: then nothing is decided, whatever the other tests
     /// say.
     fn is_void(&self) -> bool {
-        self.trials.iter().any(|t| t.exact && t.p_holds >= 1.0 && t.p_fails >= 1.0)
+        self.trials.iter().any(Trial::is_unmet_condition)
     }
 }
 
@@ -220,25 +226,25 @@ pub fn judge(findings: Vec<Finding>) -> Vec<Judged> {
     };
     let by_chance: Vec<usize> = (0..findings.len()).filter(|i| !findings[*i].is_exact()).collect();
     let raw: Vec<f64> = by_chance.iter().map(|index| two_sided(&findings[*index])).collect();
-    let mut adjusted: Vec<Option<f64>> = vec![None; findings.len()];
-    for (index, p) in by_chance.into_iter().zip(holm(&raw)) {
-        adjusted[index] = Some(p);
+    let mut of: Vec<[Option<f64>; 2]> = vec![[None; 2]; findings.len()];
+    for (index, ps) in by_chance.into_iter().zip(raw.iter().zip(holm(&raw))) {
+        of[index] = [Some(*ps.0), Some(ps.1)];
     }
-    let one = |(finding, p): (Finding, Option<f64>)| {
+    let one = |(finding, [raw_p, p]): (Finding, [Option<f64>; 2])| {
         let decided = p.unwrap_or_else(|| two_sided(&finding)) < LEVEL;
         let verdict = match (decided, finding.p_holds() < finding.p_fails()) {
             (false, _) => Verdict::Undecided,
             (true, true) => Verdict::Reproduced,
             (true, false) => Verdict::NotReproduced,
         };
-        Judged { finding, verdict, p }
+        Judged { finding, verdict, raw_p, p }
     };
-    findings.into_iter().zip(adjusted).map(one).collect()
+    findings.into_iter().zip(of).map(one).collect()
 }
 
 /// The number of groups that would decide whether a number keeps within a bound: the nearest end counts.
 fn needed(estimate: &Estimate, bound: Bound) -> Option<f64> {
-    let of = |limit: f64| estimate.groups_needed(limit, 0.5 * LEVEL / CLAIMS, POWER);
+    let of = |limit: f64| estimate.groups_needed(limit, FIRST_LEVEL, POWER);
     match bound {
         Bound::Below(limit) | Bound::Above(limit) => of(limit),
         Bound::Between(low, high) => Some(of(low)?.max(of(high)?)),

@@ -90,7 +90,7 @@ pub(crate) struct LeastChange {
 pub enum Scope {
     /// All cells in sight of a place where the robot can stand, including walls.
     Observable,
-    /// Only the cells where the robot can or might stand: the paper's words.
+    /// Only the cells where the robot can stand, and unknown ones next to them: the paper's words.
     Reachable,
 }
 
@@ -100,8 +100,9 @@ pub enum InPlace {
     /// Its own cell is a candidate like any other.
     #[default]
     Always,
-    /// The robot measures in place at view-points only. A robot that measures on the way does so at a fixed
-    /// distance, and its targets are other cells; its own cell is a candidate only if there is no other.
+    /// The robot measures in place at view-points only. A robot that measures on the way has its targets as
+    /// far from its last scan as its scans are from each other; if all are nearer, in another cell; and its
+    /// own cell is a candidate only if there is no other.
     AtViewPoints,
 }
 

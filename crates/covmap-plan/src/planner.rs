@@ -54,8 +54,11 @@ pub struct Planner {
     /// What a scan must be expected to change, if the parameters ask for it.
     pub(crate) least_change: Option<LeastChange>,
     pub(crate) window: Option<Window>,
-    /// While driving, a target is another cell than the robot's, if there is one.
-    leaves_its_cell: bool,
+    /// While driving, the least distance of a target from the last scan \[m\], if there is such a target.
+    apart: Option<f64>,
+    last_scan: Option<Point2<f64>>,
+    /// Whether decisions tell the gains of their best candidates in any case.
+    explains: bool,
     /// The direction in which the robot drove last.
     pub(crate) ahead: Option<Vector2<f64>>,
     /// The chosen view-point, and the cells in sight of it when it was chosen.
@@ -109,7 +112,9 @@ impl Planner {
             radius,
             gains,
             measured: Measured::new(grid, scan_spacing),
-            leaves_its_cell: false,
+            apart: None,
+            last_scan: None,
+            explains: true,
             novelty: vec![1.0; grid.len()],
             least_change,
             window,
@@ -155,13 +160,14 @@ impl Planner {
             self.update_limit(map, scan.index);
         }
         if self.parameters.strategy.counting().is_some() {
-            (0..self.grid.len()).for_each(|index| self.update_limit(map, index));
+            self.update_limits(map);
         }
     }
 
     /// Takes note of the place of a scan: less of another scan from near there would be new.
     fn note_look(&mut self, at: Point2<f64>) {
         self.measured.note(at);
+        self.last_scan = Some(at);
         let repeats = self.model.repeats();
         let around = Vector2::repeat(repeats.reach());
         for cell in self.grid.cells_between(at - around, at + around) {
@@ -196,9 +202,15 @@ impl Planner {
         self.take_over(map, changes);
     }
 
-    /// Takes note that the robot measures while it drives.
-    pub fn measure_while_driving(&mut self) {
-        self.leaves_its_cell = self.parameters.in_place == InPlace::AtViewPoints;
+    /// Takes note that the robot measures while it drives, at this distance \[m\].
+    pub fn measure_while_driving(&mut self, every: f64) {
+        self.apart = (self.parameters.in_place == InPlace::AtViewPoints).then_some(every);
+    }
+
+    /// Sets whether decisions tell the gains of their five best candidates even if the strategy does not weigh
+    /// gains; at first they do.
+    pub fn explain(&mut self, explains: bool) {
+        self.explains = explains;
     }
 
     /// Takes note that the robot stands in a cell, and so can stand there again.
@@ -228,20 +240,25 @@ impl Planner {
     }
 
     fn take_over(&mut self, map: &CoverageMap, changes: &[Change]) {
+        let mut ground_changes = false;
         for change in changes {
             let Some(index) = self.grid.index(change.cell) else { continue };
             let reflects_anew = self.gains.update(map, change.cell);
             if reflects_anew {
                 let known = map.is_known(change.cell);
                 let free = map.mode(change.cell) <= self.parameters.traversable_coverage + 1e-9;
-                let mut opened_or_closed = Vec::new();
-                self.traversable.update(index, known.then_some(free), |i| opened_or_closed.push(i));
-                if self.parameters.scope_of_strategy() == Scope::Reachable {
-                    opened_or_closed.into_iter().for_each(|i| self.update_limit(map, i));
-                }
+                self.traversable.update(index, known.then_some(free));
+                ground_changes = true;
             }
             self.update_limit(map, index);
         }
+        if ground_changes && self.parameters.scope_of_strategy() == Scope::Reachable {
+            self.update_limits(map);
+        }
+    }
+
+    fn update_limits(&mut self, map: &CoverageMap) {
+        (0..self.grid.len()).for_each(|index| self.update_limit(map, index));
     }
 
     /// Sets the distance up to which a cell is a reason to measure.
@@ -250,7 +267,7 @@ impl Planner {
         let known = map.is_known(cell);
         let in_scope = match self.parameters.scope_of_strategy() {
             Scope::Observable => true,
-            Scope::Reachable => !known || self.traversable.at(index),
+            Scope::Reachable => self.traversable.may_be_at(index),
         };
         let is_closed = self.window.as_ref().is_some_and(|w| w.is_closed(index));
         let limit = if in_scope && !is_closed {
@@ -288,11 +305,21 @@ impl Planner {
         let trapped = costs.reached().all(|i| self.measured.is_near(i, from));
         let mut indices = self.gains.with_reason(&reached);
         indices.retain(|i| trapped || !self.measured.is_spent(*i));
-        if self.leaves_its_cell && indices.len() > 1 {
-            let own = self.grid.index(from);
+        self.leave_the_last_scan(&mut indices, from);
+        Candidates { indices, costs, passage: Vec::new() }
+    }
+
+    /// While driving, leaves out what is nearer to the last scan than scans are to each other; of view-points
+    /// that are all that near, the robot's own, if there is another.
+    fn leave_the_last_scan(&self, indices: &mut Vec<usize>, from: Cell) {
+        let (Some(apart), Some(last)) = (self.apart, self.last_scan) else { return };
+        let is_apart = |i: usize| (self.grid.center(self.grid.cell(i)) - last).norm() >= apart;
+        let own = self.grid.index(from);
+        if indices.iter().any(|i| is_apart(*i)) {
+            indices.retain(|i| is_apart(*i));
+        } else if indices.len() > 1 {
             indices.retain(|i| Some(*i) != own);
         }
-        Candidates { indices, costs, passage: Vec::new() }
     }
 
     /// The candidates with their costs for a robot in the cell `from`, without gains and scores.
@@ -427,7 +454,7 @@ impl Planner {
             records.truncate(REPORTED);
         }
         records.sort_by(better);
-        if !uses_gain {
+        if self.explains && !uses_gain {
             self.fill_gains(&mut records);
             let largest = records.iter().map(|r| r.gain).fold(0.0, f64::max);
             let share = |gain: f64| if largest > 0.0 { gain / largest } else { 0.0 };

@@ -81,6 +81,20 @@ impl Traversable {
         self.stood[index] || !self.bumped[index] && self.seems_open(index)
     }
 
+    /// Whether the robot might be able to stand on a view-point: it can, or its cell is unknown with nothing
+    /// known in the way, next to one where it can.
+    pub(crate) fn may_be_at(&self, index: usize) -> bool {
+        let cell = self.grid.cell(index);
+        let is_beside = |(dx, dy): &(i32, i32)| {
+            self.grid.index(cell.offset(*dx, *dy)).is_some_and(|beside| self.at(beside))
+        };
+        match self.obstacle(index) {
+            Reach::CutOff => true,
+            Reach::Unknown => STEPS.iter().any(is_beside),
+            _ => false,
+        }
+    }
+
     fn seems_open(&self, index: usize) -> bool {
         self.is_free(index) && self.blockers[index] == 0
     }
@@ -110,7 +124,7 @@ impl Traversable {
         let mut hoped = self.clone();
         (0..self.free.len())
             .filter(|index| is_free(*index))
-            .for_each(|index| hoped.update(index, Some(true), |_| ()));
+            .for_each(|index| hoped.update(index, Some(true)));
         hoped
     }
 
@@ -154,19 +168,10 @@ impl Traversable {
     }
 
     /// Takes over the state of a cell: `Some(true)` if the robot may drive over it, `Some(false)` if it
-    /// blocks, `None` if it is unknown. Calls `changed` for every view-point that this opens or closes.
-    pub(crate) fn update(
-        &mut self,
-        index: usize,
-        free: Option<bool>,
-        mut changed: impl FnMut(usize),
-    ) {
+    /// blocks, `None` if it is unknown.
+    pub(crate) fn update(&mut self, index: usize, free: Option<bool>) {
         let blocking = free == Some(false);
-        let was = self.at(index);
         self.free[index] = free == Some(true);
-        if was != self.at(index) {
-            changed(index);
-        }
         if blocking == self.blocking[index] {
             return;
         }
@@ -175,14 +180,10 @@ impl Traversable {
         for k in 0..self.disc.len() {
             let (dx, dy) = self.disc[k];
             let Some(near) = self.grid.index(cell.offset(-dx, -dy)) else { continue };
-            let was = self.at(near);
             if blocking {
                 self.blockers[near] += 1;
             } else {
                 self.blockers[near] -= 1;
-            }
-            if was != self.at(near) {
-                changed(near);
             }
         }
     }
@@ -256,18 +257,16 @@ mod tests {
     fn a_view_point_needs_the_robots_radius_around_it() {
         let grid = Grid::new(Point2::origin(), 0.1, 12, 1).unwrap();
         let mut traversable = Traversable::new(grid, 0.27);
-        (0..12).for_each(|i| traversable.update(i, Some(true), |_| ()));
+        (0..12).for_each(|i| traversable.update(i, Some(true)));
         let picture =
             |t: &Traversable| (0..12).map(|i| if t.at(i) { '.' } else { '#' }).collect::<String>();
         assert_eq!(picture(&traversable), "............");
-        let mut closed = Vec::new();
-        traversable.update(5, Some(false), |i| closed.push(i));
+        traversable.update(5, Some(false));
         assert_eq!(picture(&traversable), "...#####....");
-        assert_eq!(closed.len(), 5);
         traversable.stand_on(Cell::new(3, 0));
         traversable.bump(Cell::new(1, 0), Cell::new(0, 0));
         assert_eq!(picture(&traversable), "#...####....");
-        traversable.update(5, Some(true), |_| ());
+        traversable.update(5, Some(true));
         assert_eq!(picture(&traversable), "#...........");
     }
 
@@ -275,10 +274,25 @@ mod tests {
     fn unknown_cells_are_not_traversable_but_do_not_block() {
         let grid = Grid::new(Point2::origin(), 0.1, 3, 1).unwrap();
         let mut traversable = Traversable::new(grid, 0.27);
-        traversable.update(1, Some(true), |_| ());
+        traversable.update(1, Some(true));
         assert_eq!([0, 1, 2].map(|i| traversable.at(i)), [false, true, false]);
         traversable.cover(Cell::new(2, 0));
         assert_eq!([0, 1, 2].map(|i| traversable.at(i)), [false, true, true]);
+    }
+
+    #[test]
+    fn the_robot_may_be_beside_where_it_can_stand_unless_something_is_in_the_way() {
+        let grid = Grid::new(Point2::origin(), 0.1, 12, 1).unwrap();
+        let mut traversable = Traversable::new(grid, 0.15);
+        // 2 to 4, 9 and 11 are unknown.
+        for (from, to, free) in [(0, 2, Some(true)), (5, 9, Some(true)), (10, 11, Some(false))] {
+            (from..to).for_each(|i| traversable.update(i, free));
+        }
+        let picture = |may: &dyn Fn(usize) -> bool| {
+            (0..12).map(|i| if may(i) { '.' } else { '#' }).collect::<String>()
+        };
+        assert_eq!(picture(&|i| traversable.at(i)), "..###....###");
+        assert_eq!(picture(&|i| traversable.may_be_at(i)), "...#.....###");
     }
 
     /// Which of the eight steps from the middle of 3 × 3 cells are possible.
@@ -289,7 +303,7 @@ mod tests {
     fn all_free(resolution: f64) -> Traversable {
         let grid = Grid::new(Point2::origin(), resolution, 3, 3).unwrap();
         let mut traversable = Traversable::new(grid, 0.27);
-        (0..9).for_each(|i| traversable.update(i, Some(true), |_| ()));
+        (0..9).for_each(|i| traversable.update(i, Some(true)));
         traversable
     }
 
@@ -315,7 +329,7 @@ mod tests {
     fn a_step_that_the_body_has_driven_is_possible_whatever_the_map_says() {
         let mut t = all_free(0.2);
         t.drive(Cell::new(1, 1), Cell::new(2, 2));
-        (0..9).for_each(|i| t.update(i, Some(false), |_| ()));
+        (0..9).for_each(|i| t.update(i, Some(false)));
         assert_eq!((steps_from_the_middle(&t), t.steps().from(8)), (0b10, 0b10_0000));
     }
 
@@ -325,13 +339,13 @@ mod tests {
         // is over both, .212 m away, but at neither end; with .2 m it is over them at both ends.
         for (resolution, steps) in [(0.5, 0b1111_1110), (0.3, 0b0111_1100), (0.2, 0b0111_1100)] {
             let mut t = all_free(resolution);
-            t.update(5, Some(false), |_| ());
+            t.update(5, Some(false));
             assert_eq!(steps_from_the_middle(&t), steps, "{resolution}");
         }
         // If the cells beside a diagonal are unknown, the robot tries it.
         let grid = Grid::new(Point2::origin(), 0.2, 2, 2).unwrap();
         let mut t = Traversable::new(grid, 0.27);
-        [0, 3].into_iter().for_each(|i| t.update(i, Some(true), |_| ()));
+        [0, 3].into_iter().for_each(|i| t.update(i, Some(true)));
         assert_eq!(t.steps().from(0), 0b10);
     }
 }

@@ -101,6 +101,19 @@ impl Estimate {
     }
 }
 
+/// Returns the distance of a mean from a bound, in standard deviations of the values, that a one-sided
+/// test at `level` finds with a probability of `power` on this number of groups; `None` for fewer than two.
+///
+/// # Formula
+/// ```text
+/// (t(1 − level; groups − 1) + z(power)) / √groups
+/// ```
+pub fn detectable(groups: usize, level: f64, power: f64) -> Option<f64> {
+    let student = Estimate { value: 0.0, standard_error: 1.0, groups }.student()?;
+    let quantiles = student.inverse_cdf(1.0 - level) + Normal::standard().inverse_cdf(power);
+    Some(quantiles / (groups as f64).sqrt())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -145,6 +158,14 @@ mod tests {
         assert!((needed - 7.848_88).abs() < 1e-4, "{needed}");
         assert!(estimate.groups_needed(3.0, 0.025, 0.8).is_none());
         assert!(Estimate { groups: 1, ..estimate }.groups_needed(2.0, 0.025, 0.8).is_none());
+    }
+
+    #[test]
+    fn more_groups_find_less() {
+        // t(.975; 19) = 2.093024, z(.8) = .841621: 2.934645 / √20 = .656207.
+        let found = detectable(20, 0.025, 0.8).unwrap();
+        assert!((found - 0.656_207).abs() < 1e-5, "{found}");
+        assert!(detectable(5, 0.025, 0.8).unwrap() > 1.5 && detectable(1, 0.025, 0.8).is_none());
     }
 
     #[test]

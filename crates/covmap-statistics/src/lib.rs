@@ -32,7 +32,7 @@ mod share;
 mod spread;
 
 pub use bootstrap::{Grouped, bootstrap};
-pub use estimate::Estimate;
+pub use estimate::{Estimate, detectable};
 pub use holm::holm;
 pub use kendall::kendall_tau;
 pub use proper_score::{

@@ -79,6 +79,7 @@ fn mission(cells: usize, directions: &[f64], range: f64, limits: Limits) -> Miss
         outside: Raster::filled(grid, false),
         start,
         limits,
+        explains: true,
     }
 }
 

@@ -86,7 +86,7 @@ mod tests {
         for (y, row) in (0..).zip(rows.iter().rev()) {
             for (x, cell) in (0..).zip(row.chars()) {
                 let here = Cell::new(x, y);
-                traversable.update(grid.index(here).unwrap(), Some(cell != '#'), |_| ());
+                traversable.update(grid.index(here).unwrap(), Some(cell != '#'));
                 if cell == '!' {
                     traversable.bump(here.offset(-1, 0), here);
                 }

@@ -142,17 +142,24 @@ fn a_robot_that_cannot_get_away_from_a_scan_measures_again() {
 }
 
 #[test]
-fn while_driving_a_target_is_another_cell_if_there_is_one() {
-    for (in_place, candidates) in [(InPlace::Always, vec![3, 7]), (InPlace::AtViewPoints, vec![7])]
-    {
-        let parameters = PlannerParameters { in_place, ..plain(Strategy::Cl) };
-        let mut corridor = corridor_with(&parameters);
-        assert_eq!(corridor.candidates(3), [3, 7], "{in_place:?}: at view-points");
-        corridor.planner.measure_while_driving();
-        assert_eq!(corridor.candidates(3), candidates, "{in_place:?}");
+fn while_driving_a_target_is_as_far_from_the_last_scan_as_scans_are_apart() {
+    // The last scan at 3 or 5; cells have sides of 1 m.
+    let cases = [
+        (InPlace::Always, 3, 2.0, vec![3, 7]),
+        (InPlace::AtViewPoints, 3, 2.0, vec![7]),
+        (InPlace::AtViewPoints, 5, 2.0, vec![3, 7]),
+        // All are nearer: the robot's own cell is left out.
+        (InPlace::AtViewPoints, 3, 5.0, vec![7]),
+    ];
+    for (in_place, at, every, candidates) in cases {
+        let mut corridor = corridor_with(&PlannerParameters { in_place, ..plain(Strategy::Cl) });
+        corridor.look_in_vain(at);
+        assert_eq!(corridor.candidates(at), [3, 7], "{in_place:?}: at view-points");
+        corridor.planner.measure_while_driving(every);
+        assert_eq!(corridor.candidates(at), candidates, "{in_place:?}, every {every} m from {at}");
         // Only one is left.
         corridor.know(8, &[1.0, 0.0]);
-        assert_eq!(corridor.candidates(3), [3], "{in_place:?}");
+        assert_eq!(corridor.candidates(at), [3], "{in_place:?}");
     }
 }
 
