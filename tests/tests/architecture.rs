@@ -5,13 +5,14 @@ use crate::{root, rust_files};
 use std::collections::BTreeSet;
 
 /// Every crate, with the crates of covmap that it uses: exactly the arrows of docs/architecture.md.
-const ARROWS: [(&str, &[&str]); 17] = [
+const ARROWS: [(&str, &[&str]); 18] = [
     ("covmap", &[]),
     ("covmap-sonar", &[]),
+    ("covmap-bag", &[]),
     ("covmap-io", &["covmap"]),
     ("covmap-statistics", &["covmap"]),
     ("covmap-draw", &["covmap", "covmap-io"]),
-    ("covmap-log", &["covmap-io", "covmap-sonar"]),
+    ("covmap-log", &["covmap-bag", "covmap-io", "covmap-sonar"]),
     ("covmap-model", &["covmap", "covmap-sonar"]),
     ("covmap-world", &["covmap", "covmap-sonar", "covmap-statistics"]),
     ("covmap-survey", &["covmap", "covmap-sonar", "covmap-world"]),
@@ -23,6 +24,7 @@ const ARROWS: [(&str, &[&str]); 17] = [
         "covmap-lab",
         &[
             "covmap",
+            "covmap-bag",
             "covmap-draw",
             "covmap-explore",
             "covmap-fit",
@@ -70,6 +72,7 @@ const ARROWS: [(&str, &[&str]); 17] = [
         "covmap-cli",
         &[
             "covmap",
+            "covmap-bag",
             "covmap-campaign",
             "covmap-draw",
             "covmap-explore",
@@ -164,7 +167,8 @@ fn the_world_never_evaluates_the_sensor_model() {
 
 #[test]
 fn what_is_foreign_has_one_home() {
-    let homes: [(&str, &[&str]); 8] = [
+    let homes: [(&str, &[&str]); 9] = [
+        ("mcap", &["covmap-bag"]),
         ("parry2d", &["covmap-world"]),
         ("ron", &["covmap-io"]),
         ("serde-saphyr", &["covmap-io"]),

@@ -11,7 +11,7 @@ mod values;
 
 pub(crate) use campaigns::{Campaign, Collect};
 pub use files::Force;
-pub(crate) use files::{Beside, Log, Model, Truth};
+pub(crate) use files::{Bag, BagParts, Beside, Log, Model, Truth};
 pub(crate) use read_out::ReadOutFile;
 pub(crate) use safe_map::SafeMap;
 pub(crate) use settings::Settings;
@@ -72,6 +72,8 @@ Example:
 
 const MAP_EXAMPLES: &str = "\
 LOG is one of
+  a bag of ROS 2, FILE.mcap: sensor_msgs/Range, or LaserScan with --sensor laser; the places of
+  the sensors and of the robot from /tf and /tf_static, or from nav_msgs/Odometry
   a CARMEN text log, plain or packed with gzip: PARAM, ODOM, SONAR, FLASER, ROBOTLASER1
   a folder with od.txt (t x y theta: ms, mm, mm, 1/10 degree), sonar.txt (t s0 s1 ...: ms,
   mm) and laser.txt (t r0 ... r360: ms, mm, from -90 degrees in steps of 1/2)
@@ -94,12 +96,18 @@ The output folder, like that of `explore`, holds
 
 Examples:
   cargo xtask map corridor.log.gz
+  cargo xtask map drive.mcap --topic /scan --sensor laser --base-frame base_footprint
   cargo xtask map sonar8/test1 --poses sonar8/test1_poses_corrected.txt
   cargo xtask map sonar8/test1 --sensor laser --resolution 0.05 --out out/laser
   cargo xtask map corridor.log.gz --config out/fit/config.ron --read-out out/fit/read_out.ron
 
 Exit codes: 0 done; 2 bad input, or a folder that cannot be written; 130 interrupted with Ctrl-C,
 with the map of the frames up to then.
+";
+
+const BAG_EXAMPLES: &str = "\
+Example:
+  cargo xtask bag drive.mcap
 ";
 
 const SURVEY_EXAMPLES: &str = "\
@@ -206,9 +214,12 @@ pub enum Command {
     /// Builds a map from the log of a real robot.
     #[command(after_help = MAP_EXAMPLES)]
     Map(Map),
-    /// Writes the scans of a run as a CARMEN log.
+    /// Writes a run as a CARMEN log, or a run or a log as a bag of ROS 2.
     #[command(after_help = files::LOG_EXAMPLES)]
     Log(Log),
+    /// Lists the topics, frames and numbers of messages of a bag of ROS 2.
+    #[command(after_help = BAG_EXAMPLES)]
+    Bag(Bag),
     /// Writes the exact coverage of every cell of a world.
     #[command(after_help = files::TRUTH_EXAMPLES)]
     Truth(Truth),
@@ -370,6 +381,8 @@ pub struct Map {
     /// ... or turned by this angle in degrees
     #[arg(long, value_name = "DEG", value_parser = every_degrees, default_value = "5")]
     pub(crate) every_degrees: f64,
+    #[command(flatten)]
+    pub(crate) bag: BagParts,
     #[command(flatten)]
     pub(crate) read_out: ReadOutFile,
     #[command(flatten)]

@@ -13,6 +13,7 @@
 
 mod about;
 mod arguments;
+mod bag;
 mod beside;
 mod built_in;
 mod campaign;
@@ -92,6 +93,7 @@ impl Command {
             Self::Explain(arguments) => explain::run(&arguments),
             Self::Map(arguments) => map::run(&arguments),
             Self::Log(arguments) => log::run(&arguments),
+            Self::Bag(arguments) => bag::run(&arguments),
             Self::Truth(arguments) => truth::run(&arguments),
             Self::Model(arguments) => model::run(&arguments),
             Self::Fit(arguments) => fit::run(&arguments),

@@ -1,20 +1,44 @@
-//! `log`: the scans of a run as a CARMEN log.
+//! `log`: the scans of a run as a CARMEN log, or a run or a log as a bag of ROS 2.
+
+mod layout;
 
 use crate::about::about;
 use crate::arguments::Log;
+use crate::built_in;
 use crate::output;
+use crate::terminal::Terminal;
+use crate::terminal::interrupt::{self, Interrupt};
+use crate::terminal::progress::Progress;
 use crate::terminal::say;
-use anyhow::Result;
+use anyhow::{Result, anyhow};
 use covmap_explore::Event;
 use covmap_io::{FileError, NewFile, read_json_lines};
-use covmap_lab::{RunPath, TraceHeader, in_folder, read_header};
-use covmap_log::{CarmenWriter, CarmenWriterError};
+use covmap_lab::{RunPath, TraceHeader, files, in_folder, read_header, write_run_bag};
+use covmap_log::{BagOptions, CarmenWriter, CarmenWriterError, LogOptions, Sensor};
 use covmap_sonar::SonarRing;
 use std::path::Path;
 use std::process::ExitCode;
 
 pub(crate) fn run(arguments: &Log) -> Result<ExitCode> {
-    let Log { dir, out, force } = arguments;
+    let Log { dir, out, .. } = arguments;
+    let is_run = !dir.exists() || dir.join("trace.jsonl").exists();
+    match (is_run, out.extension().is_some_and(|ending| ending == "mcap")) {
+        (true, false) => carmen(arguments),
+        (true, true) => bag_of_run(arguments),
+        (false, true) => bag_of_log(arguments),
+        (false, false) => {
+            in_folder(dir)?;
+            Err(anyhow!(
+                "{}: is no run of `explore`; name the new file {}.mcap, and a log becomes a bag",
+                dir.display(),
+                out.with_extension("").display()
+            ))
+        }
+    }
+}
+
+fn carmen(arguments: &Log) -> Result<ExitCode> {
+    let Log { dir, out, force, .. } = arguments;
     let trace = in_folder(dir)?;
     let replace = output::replace(out, *force, &[&trace])?;
     let header = read_header(&trace)?;
@@ -23,6 +47,50 @@ pub(crate) fn run(arguments: &Log) -> Result<ExitCode> {
     let scans = write(&trace, (&header, &ring), (out, &mut file))?;
     file.finish()?;
     say::line(format!("{scans} scans, {}", out.display()));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn bag_of_run(arguments: &Log) -> Result<ExitCode> {
+    let Log { dir, out, force, .. } = arguments;
+    let trace = in_folder(dir)?;
+    let replace = output::replace(out, *force, &[&trace])?;
+    let mut file = NewFile::create(out, replace)?;
+    let scans = write_run_bag(&trace, &mut file)?;
+    file.finish()?;
+    let layout = layout::write(out, replace)?;
+    say::line(format!(
+        "{scans} scans, {}; a layout for Foxglove: {}",
+        out.display(),
+        layout.display()
+    ));
+    Ok(ExitCode::SUCCESS)
+}
+
+fn bag_of_log(arguments: &Log) -> Result<ExitCode> {
+    let Log { dir, out, force, config, poses } = arguments;
+    let built_in = if dir.is_dir() { built_in::SONAR8 } else { built_in::B21R };
+    let (config, name) = files::config(config.as_deref(), built_in)?;
+    files::check(&config, &name)?;
+    let (ring, _) = config.build()?;
+    let (sensor, bag) = (Sensor::Sonar, BagOptions::default());
+    let options = LogOptions { sensor, ring, poses: poses.clone(), bag };
+    let log = covmap_lab::Log { path: dir.clone(), options };
+    let replace = output::replace(out, *force, &[dir])?;
+    let interrupt = Interrupt::listen()?;
+    let progress = Progress::new(false);
+    let terminal = Terminal { progress: &progress, interrupt: &interrupt };
+    let mut file = NewFile::create(out, replace)?;
+    let scans = log.write_bag(&mut file, &terminal)?;
+    interrupt.done();
+    let Some(scans) = scans else { return Ok(interrupt::EXIT_CODE.into()) };
+    file.finish()?;
+    let layout = layout::write(out, replace)?;
+    progress.finish();
+    say::line(format!(
+        "{scans} scans, {}; a layout for Foxglove: {}",
+        out.display(),
+        layout.display()
+    ));
     Ok(ExitCode::SUCCESS)
 }
 

@@ -98,7 +98,8 @@ fn log(arguments: &Map, config: &Config) -> Result<Log> {
         SensorName::Sonar => Sensor::Sonar,
         SensorName::Laser => Sensor::Laser,
     };
-    let options = LogOptions { sensor, ring, poses: arguments.poses.clone() };
+    let options =
+        LogOptions { sensor, ring, poses: arguments.poses.clone(), bag: arguments.bag.options() };
     Ok(Log { path: arguments.log.clone(), options })
 }
 
@@ -162,7 +163,7 @@ fn sensor_name(sensor: SensorName) -> &'static str {
 fn log_name(log: &Path) -> String {
     let whole = log.canonicalize().unwrap_or_else(|_| log.to_owned());
     let name = whole.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let endings = [".gz", ".log", ".clf", ".txt"];
+    let endings = [".gz", ".log", ".clf", ".txt", ".mcap"];
     let short =
         endings.iter().fold(name.as_str(), |name, end| name.strip_suffix(end).unwrap_or(name));
     if short.is_empty() { "log".to_owned() } else { short.to_owned() }
@@ -194,7 +195,8 @@ fn run_line(arguments: &Map, config: &Config) -> Result<String> {
     let words = format!("map {}, {}", log_name(&arguments.log), sensor_name(arguments.sensor));
     let mut digest = output::log_digest(&arguments.log)?
         .with(serde_json::to_vec(config)?)
-        .with_numbers(&[arguments.every, arguments.every_degrees]);
+        .with_numbers(&[arguments.every, arguments.every_degrees])
+        .with(format!("{:?}", arguments.bag.options()).into_bytes());
     for file in arguments.poses.as_deref().into_iter().chain(arguments.read_out.path()) {
         digest = digest.with_file(file)?;
     }

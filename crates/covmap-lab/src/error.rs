@@ -5,7 +5,7 @@ use covmap::{GridError, MapError, ReadOutError};
 use covmap_explore::{MissionError, ParameterError};
 use covmap_fit::{AxisError, FitError};
 use covmap_io::{FileError, MapServerError, shown};
-use covmap_log::LogError;
+use covmap_log::{BagWriterError, LogError};
 use covmap_model::ModelError;
 use covmap_plan::{PlannerError, StrategyError};
 use covmap_sonar::RingError;
@@ -46,6 +46,9 @@ pub enum LabError {
 /// A fault, without the name of its file.
 #[derive(Debug, thiserror::Error)]
 pub enum Fault {
+    /// A bag cannot be written.
+    #[error(transparent)]
+    Bag(#[from] BagWriterError),
     /// A configuration is invalid.
     #[error(transparent)]
     Config(#[from] ConfigError),

@@ -4,10 +4,13 @@ use crate::error::{Fault, LabError, Result, about};
 use crate::watch::Watch;
 use covmap::{CoverageMap, Grid, GridError};
 use covmap_draw::Trail;
-use covmap_log::{Account, Follower, Leg, LogError, LogFrame, LogOptions, LogReader, Sensor};
+use covmap_log::{
+    Account, Follower, Leg, LogError, LogFrame, LogOptions, LogReader, RosBagWriter, Sensor,
+};
 use covmap_model::{Looks, OccupancyGrid, OccupancyParameters, SensorModel, integrate_body};
 use covmap_sonar::SonarRing;
 use nalgebra::{Isometry2, Point2, Vector2};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -105,6 +108,44 @@ impl Log {
         let mut bounds = bounds.ok_or_else(|| about(&self.path)(Fault::NoScans))?;
         bounds.add_ends(&follower.rest(&reader.rest()));
         Ok(Some(LogOverview { rings, account: reader.account().clone(), bounds }))
+    }
+
+    /// Writes the scans of the log's sonars, and the robot's way, as a bag of ROS 2; returns the number of
+    /// scans, `None` if the watch stopped this.
+    ///
+    /// # Errors
+    /// If the log cannot be read, the sensors change on the way, or the bag cannot be written.
+    pub fn write_bag<W: Write>(&self, out: W, watch: &dyn Watch) -> Result<Option<usize>> {
+        let fault = |error| about(&self.path)(Fault::Bag(error));
+        let mut reader = self.open()?;
+        let Some(first) = reader.next() else { return Ok(Some(0)) };
+        let first = first.map_err(hint)?;
+        let ring = Arc::clone(&first.ring);
+        let mut bag = RosBagWriter::new(&ring, out).map_err(fault)?;
+        let mut time = first.scan.time;
+        for frame in std::iter::once(Ok(first)).chain(&mut reader) {
+            let frame = frame.map_err(hint)?;
+            if ring_number(std::slice::from_ref(&ring), &frame.ring).is_none() {
+                let fault = Fault::ManySensors { line: frame.line, most: 1 };
+                return Err(about(&self.path)(fault));
+            }
+            // The last one is the pose of the scan.
+            for passed in frame.way.iter().take(frame.way.len().saturating_sub(1)) {
+                time = (time + passed.seconds).min(frame.scan.time);
+                bag.pass(time, &passed.pose).map_err(fault)?;
+            }
+            time = frame.scan.time;
+            bag.write(&frame.scan).map_err(fault)?;
+            watch.tell(&format_args!("writing the bag: {time:.0} s into the log"));
+            if watch.is_stopped() {
+                return Ok(None);
+            }
+        }
+        for passed in reader.rest() {
+            time += passed.seconds;
+            bag.pass(time, &passed.pose).map_err(fault)?;
+        }
+        bag.finish().map(Some).map_err(fault)
     }
 
     fn open(&self) -> Result<LogReader> {

@@ -8,7 +8,7 @@ use crate::memory;
 use covmap::{CoverageMap, Raster};
 use covmap_fit::{BodyRecord, Example};
 use covmap_io::read_ron;
-use covmap_log::{Account, LogOptions, LogReader, Sensor};
+use covmap_log::{Account, BagOptions, LogOptions, LogReader, Sensor};
 use covmap_model::integrate_body;
 use covmap_sonar::{Scan, SonarRing};
 use covmap_survey::{Survey, SurveyParameters};
@@ -70,7 +70,12 @@ impl Held {
 /// # Errors
 /// If the log cannot be read, or has more readings than may be held.
 pub fn frames(log: &Path, poses: Option<&Path>, sensor: Sensor, ring: SonarRing) -> Result<Frames> {
-    let options = LogOptions { sensor, ring, poses: poses.map(Path::to_path_buf) };
+    let options = LogOptions {
+        sensor,
+        ring,
+        poses: poses.map(Path::to_path_buf),
+        bag: BagOptions::default(),
+    };
     let mut reader = LogReader::open(log, &options)?;
     let (mut scans, mut lines, mut held) = (Vec::new(), Vec::new(), Held::default());
     for frame in &mut reader {

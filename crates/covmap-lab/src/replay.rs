@@ -80,14 +80,14 @@ fn look(mission: &Mission, from: Cell, decision: &Decision, view: &View<'_>) -> 
 }
 
 /// Checks a header, which may come from any program.
-fn check(header: &TraceHeader) -> Result<()> {
+pub(crate) fn check(header: &TraceHeader) -> Result<()> {
     let TraceHeader { config, grid, .. } = header;
     check_config(config).map_err(in_part("config"))?;
     // For two planners: the candidates come from a clone.
     memory::check_run(grid, config, 2)
 }
 
-fn check_scans(events: &[Event], beams: usize) -> Result<()> {
+pub(crate) fn check_scans(events: &[Event], beams: usize) -> Result<()> {
     for event in events {
         if let Event::Scan { number, scan } = event
             && scan.ranges.len() != beams

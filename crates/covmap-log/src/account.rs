@@ -21,6 +21,8 @@ pub struct Account {
     pub restarts: usize,
     /// The lines of other sensors and poses that were not used: tag and number.
     pub left_out: Vec<(&'static str, usize)>,
+    /// What else a user should know, each as a sentence.
+    pub notes: Vec<String>,
 }
 
 /// The account of one sensor of a log: a ring of sonars, or a laser.
@@ -194,6 +196,7 @@ impl Account {
         if !left_out.is_empty() {
             remarks.push(format!("lines that were not used: {}", left_out.join(", ")));
         }
+        remarks.extend(self.notes.iter().cloned());
         remarks.extend(self.sensors.iter().filter_map(SensorAccount::suspicion));
         remarks
     }

@@ -85,6 +85,19 @@ pub enum LogError {
         /// The line at which the limit was passed, counted from 1.
         line: usize,
     },
+    /// A bag cannot be read.
+    #[error(transparent)]
+    Bag(#[from] covmap_bag::BagError),
+    /// A bag has not what a map needs.
+    #[error("{}: the bag has {what}. Its topics: {topics}", path.display())]
+    BagLacks {
+        /// The file.
+        path: PathBuf,
+        /// What it lacks.
+        what: String,
+        /// Its topics, with types and numbers of messages.
+        topics: String,
+    },
     /// No frame of the log can be used.
     #[error("{}: has no scan that can be used: {}", path.display(), in_words(skipped, wanted, others))]
     NoScans {

@@ -4,14 +4,11 @@ use super::carmen_line::TAGS;
 use covmap_io::{Signature, signature};
 use std::path::Path;
 
-const ROSBAG: &str = "a bag of ROS 1, which `rosbag` and the Python package `rosbags` read; write its \
-                      scans from there";
-const DB3: &str = "an SQLite database, such as rosbag2 writes (.db3), which `ros2 bag` and the \
-                   Python package `rosbags` read; write its scans from there";
-const MCAP: &str = "an MCAP recording, as of rosbag2, which `ros2 bag`, `mcap` and Foxglove read; \
-                    write its scans from there";
-const ROSBAG2: &str = "the folder of a rosbag2 recording, which `ros2 bag` and the Python package \
-                       `rosbags` read; write its scans from there";
+const ROSBAG: &str = "a bag of ROS 1; the Python package `rosbags` makes an MCAP file of it";
+const DB3: &str = "an SQLite database, such as rosbag2 writes (.db3); `ros2 bag convert` and the Python \
+                   package `rosbags` make an MCAP file of it";
+const ROSBAG2: &str = "the folder of a rosbag2 recording; name the .mcap file in it. One with .db3 files is \
+                       converted by `ros2 bag convert`, or by the Python package `rosbags`";
 const CARMEN_MAP: &str = "a map of CARMEN, which its own tools read";
 const IMAGE: &str = "an image; a map of map_server is a world for `explore`, by its YAML file";
 const ARCHIVE: &str = "an archive; unpack it first";
@@ -23,10 +20,9 @@ const RUN: &str = "the folder of a run; `log` makes a log of it";
 const MAP: &str = "the folder of a map that `map` or `explore` wrote";
 
 /// The endings of names, for contents that say nothing.
-const ENDINGS: [(&str, &str); 12] = [
+const ENDINGS: [(&str, &str); 11] = [
     ("bag", ROSBAG),
     ("db3", DB3),
-    ("mcap", MCAP),
     ("map", CARMEN_MAP),
     ("png", IMAGE),
     ("pgm", IMAGE),
@@ -43,7 +39,8 @@ pub(super) fn kind(head: &[u8]) -> Option<&'static str> {
     match signature(head) {
         Some(Signature::RosBag) => Some(ROSBAG),
         Some(Signature::Sqlite) => Some(DB3),
-        Some(Signature::Mcap) => Some(MCAP),
+        // A bag is opened before.
+        Some(Signature::Mcap) => None,
         Some(Signature::CarmenMap) => Some(CARMEN_MAP),
         Some(Signature::MapImage | Signature::Jpeg) => Some(IMAGE),
         Some(Signature::Archive) => Some(ARCHIVE),

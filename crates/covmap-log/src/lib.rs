@@ -1,9 +1,15 @@
 //! Logs of real robots, as scans with poses, one after the other.
 //!
-//! [`LogReader`] reads CARMEN's text logs and folders of three files, and [`CarmenWriter`] writes
-//! the former. The reader holds only a few frames at a time, however long a log is.
+//! [`LogReader`] reads CARMEN's text logs, folders of three files, and bags of ROS 2; [`CarmenWriter`] writes
+//! the first. The reader holds only a few frames at a time, however long a log is.
 
 mod account;
+mod bag_log;
+mod bag_options;
+mod bag_survey;
+#[cfg(test)]
+mod bag_tests;
+mod bag_writer;
 mod carmen;
 mod carmen_line;
 mod carmen_writer;
@@ -31,6 +37,8 @@ mod track;
 mod way;
 
 pub use account::{Account, Readings, SensorAccount, Taken};
+pub use bag_options::BagOptions;
+pub use bag_writer::{BagWriterError, FRAMES, RosBagWriter};
 pub use carmen_writer::{CarmenWriter, CarmenWriterError};
 pub use error::LogError;
 pub use follower::{Follower, Leg};

@@ -4,6 +4,7 @@ use super::limits::{LONGEST_LINE, MOST_RATIO};
 use super::{LogError, foreign};
 use covmap_io::open_file;
 use flate2::read::MultiGzDecoder;
+use std::fs::File;
 use std::io::{self, BufRead, BufReader, Cursor, Read};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -14,6 +15,14 @@ const ALWAYS_UNPACKED: u64 = 16 << 20;
 const HEAD: u64 = 1 << 20;
 
 type Input = Box<dyn Read + Send>;
+
+/// Opens a file that can be read again and again.
+pub(super) fn open(path: &Path) -> Result<File, LogError> {
+    open_file(path).map_err(|source| match source.kind() {
+        io::ErrorKind::Other => LogError::NotAFile { path: path.to_owned() },
+        _ => LogError::Io { path: path.to_owned(), source },
+    })
+}
 
 /// The lines of a file, one after the other.
 pub(super) struct Lines {
@@ -28,11 +37,7 @@ pub(super) struct Lines {
 impl Lines {
     /// Returns the lines of a file.
     pub(super) fn open(path: &Path) -> Result<Self, LogError> {
-        let refused = |source: io::Error| match source.kind() {
-            io::ErrorKind::Other => LogError::NotAFile { path: path.to_owned() },
-            _ => LogError::Io { path: path.to_owned(), source },
-        };
-        Self::new(path, open_file(path).map_err(refused)?)
+        Self::new(path, open(path)?)
     }
 
     /// Returns the lines of `input`, which `path` names in errors.

@@ -1,5 +1,6 @@
 //! The options of a reader.
 
+use super::BagOptions;
 use covmap_sonar::SonarRing;
 use std::path::PathBuf;
 
@@ -24,4 +25,6 @@ pub struct LogOptions {
     /// Poses that replace the log's: a file with `t_ms x_m y_m theta_rad` in each line, in the
     /// order of time.
     pub poses: Option<PathBuf>,
+    /// What is read from a bag.
+    pub bag: BagOptions,
 }

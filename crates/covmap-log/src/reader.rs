@@ -1,5 +1,6 @@
 //! The reader of logs of any kind.
 
+use super::bag_log::BagLog;
 use super::carmen::CarmenLog;
 use super::device::Measured;
 use super::folder::{self, FolderLog};
@@ -7,7 +8,8 @@ use super::lines::Lines;
 use super::poses::{PoseFile, Units};
 use super::skipped::Damage;
 use super::way::Way;
-use super::{Account, LogError, LogOptions, Passed, Sensor, SkipReason, Skipped, foreign};
+use super::{Account, LogError, LogOptions, Passed, Sensor, SkipReason, Skipped, foreign, lines};
+use covmap_io::{Signature, signature};
 use covmap_sonar::{Scan, SonarRing};
 use std::fmt;
 use std::io::Read;
@@ -32,6 +34,7 @@ pub struct LogFrame {
 enum Source {
     Carmen(Box<CarmenLog>),
     Folder(Box<FolderLog>),
+    Bag(Box<BagLog>),
 }
 
 /// The frames of a log, one after the other, in the order of its lines.
@@ -52,15 +55,18 @@ enum Source {
 ///   and `laser.txt` (`t r0 … r360`: ms, mm, from −90° counter-clockwise in steps of ½°, by a laser
 ///   0.12 m before the robot's centre).
 ///
+/// - a bag of ROS 2, an MCAP file: [`BagOptions`](super::BagOptions) says what is read of it.
+///
 /// A range of at least the sensor's longest is `NoEcho`, also if the longest is rounded to, or cut
 /// at, the decimal places of the range. A range below the sensor's shortest, 0, a negative one and
 /// NaN are `Missing`. The longest range is the one that the log states; of several, the smallest.
 ///
 /// ```no_run
-/// use covmap_log::{LogOptions, LogReader, Sensor};
+/// use covmap_log::{BagOptions, LogOptions, LogReader, Sensor};
 /// use covmap_sonar::SonarRing;
 ///
-/// let options = LogOptions { sensor: Sensor::Sonar, ring: SonarRing::b21r(), poses: None };
+/// let (sensor, ring, bag) = (Sensor::Sonar, SonarRing::b21r(), BagOptions::default());
+/// let options = LogOptions { sensor, ring, poses: None, bag };
 /// let mut log = LogReader::open("corridor.log.gz", &options)?;
 /// for frame in &mut log {
 ///     let frame = frame?;
@@ -97,6 +103,12 @@ impl LogReader {
             };
             let in_step = options.poses.is_none();
             return Ok(Self { in_step, ..Self::new(source, Some(poses), options) });
+        }
+        if is_bag(path)? {
+            let file = options.poses.as_deref();
+            let poses = file.map(|file| PoseFile::open(file, Units::CORRECTED)).transpose()?;
+            let source = Source::Bag(Box::new(BagLog::open(path, options)?));
+            return Ok(Self::new(source, poses, options));
         }
         Self::of_lines(Lines::open(path)?, options)
     }
@@ -135,6 +147,7 @@ impl LogReader {
             (Source::Carmen(_), Sensor::Sonar) => "line SONAR",
             (Source::Carmen(_), Sensor::Laser) => "line FLASER, ROBOTLASER or RAWLASER",
             (Source::Folder(_), _) => "line",
+            (Source::Bag(_), _) => "message",
         };
         let (in_step, way, place, account) = (false, Way::default(), 0, Account::default());
         let (frames, ended) = (0, false);
@@ -156,6 +169,7 @@ impl LogReader {
         match &mut self.source {
             Source::Carmen(log) => log.rest(),
             Source::Folder(_) => Vec::new(),
+            Source::Bag(log) => log.rest(),
         }
     }
 
@@ -163,6 +177,7 @@ impl LogReader {
         match &self.source {
             Source::Carmen(log) => log.path(),
             Source::Folder(log) => log.path(),
+            Source::Bag(log) => log.path(),
         }
     }
 
@@ -170,6 +185,7 @@ impl LogReader {
         match &mut self.source {
             Source::Carmen(log) => log.next(&mut self.account),
             Source::Folder(log) => log.next(&mut self.account),
+            Source::Bag(log) => log.next(&mut self.account),
         }
     }
 
@@ -185,7 +201,7 @@ impl LogReader {
             Source::Folder(log) if self.in_step => {
                 frame.tied || log.is_coarse() || poses.is_coarse()
             }
-            Source::Folder(_) | Source::Carmen(_) => false,
+            Source::Folder(_) | Source::Carmen(_) | Source::Bag(_) => false,
         };
         let in_line = if coarse { poses.at_line(frame.line) } else { None };
         let Some((pose, place)) = in_line.or_else(|| poses.at(frame.stamp.time)) else {
@@ -224,11 +240,19 @@ impl LogReader {
         let (path, wanted) = (self.path().to_owned(), self.wanted);
         let others = match &self.source {
             Source::Carmen(log) => log.unwanted(),
-            Source::Folder(_) => Vec::new(),
+            Source::Folder(_) | Source::Bag(_) => Vec::new(),
         };
         let skipped = Box::new(self.account.skipped.clone());
         Err(LogError::NoScans { path, wanted, others, skipped })
     }
+}
+
+/// Whether a file is a bag, by its beginning.
+fn is_bag(path: &Path) -> Result<bool, LogError> {
+    let mut head = Vec::new();
+    let read = lines::open(path)?.take(16).read_to_end(&mut head);
+    read.map_err(|source| LogError::Io { path: path.to_owned(), source })?;
+    Ok(signature(&head) == Some(Signature::Mcap))
 }
 
 impl Iterator for LogReader {

@@ -26,7 +26,7 @@ pub(super) fn two_sonars() -> SonarRing {
 }
 
 pub(super) fn options(sensor: Sensor) -> LogOptions {
-    LogOptions { sensor, ring: two_sonars(), poses: None }
+    LogOptions { sensor, ring: two_sonars(), poses: None, bag: BagOptions::default() }
 }
 
 /// All frames, the skipped ones, and the error at the end.

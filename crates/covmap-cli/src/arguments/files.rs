@@ -3,14 +3,22 @@
 use super::values::{range, resolution};
 use clap::Args;
 use covmap_io::Replace;
+use covmap_log::BagOptions;
 use std::path::PathBuf;
 
 pub(super) const LOG_EXAMPLES: &str = "\
 Each scan of the trace becomes a line ODOM and a line SONAR of the same time. No echo is written as
 the longest range, and a missing reading as 0. Read back, the log gives the same scans.
 
-Example:
+A bag, FILE.mcap, has for each sonar a topic with sensor_msgs/Range, /tf, /tf_static and /odom; of a
+run also /map, /entropy, /certificate, /path and /candidates, with the reason of each decision.
+FILE.foxglove.json beside it is a layout for Foxglove. Read back, a bag gives the same scans, in
+single precision.
+
+Examples:
   cargo xtask log out/lab-IG_CL-0.1-1 --out lab.log
+  cargo xtask log out/lab-IG_CL-0.1-1 --out lab.mcap
+  cargo xtask log sonar8/test1 --poses sonar8/test1_poses_corrected.txt --out test1.mcap
 ";
 
 pub(super) const TRUTH_EXAMPLES: &str = "\
@@ -75,13 +83,52 @@ pub struct Beside {
 /// The arguments of `log`.
 #[derive(Debug, Args)]
 pub struct Log {
-    /// Folder of a run of `explore` (or DIR.partial, while the run writes it)
+    /// Folder of a run of `explore` (or DIR.partial, while the run writes it); or a log of sonars that
+    /// becomes a bag
     pub(crate) dir: PathBuf,
-    /// File for the log
-    #[arg(long, value_name = "FILE.log")]
+    /// File for the log: FILE.mcap is a bag of ROS 2, any other name a CARMEN log
+    #[arg(long, value_name = "FILE")]
     pub(crate) out: PathBuf,
+    /// Configuration of the sonars, of a log that does not state them [default: configs/sonar8.ron for a
+    /// folder, configs/b21r.ron for a CARMEN log; both are built in]
+    #[arg(long, value_name = "FILE")]
+    pub(crate) config: Option<PathBuf>,
+    /// File of poses that replace the log's: lines `t_ms x_m y_m theta_rad` in the order of time
+    #[arg(long, value_name = "FILE")]
+    pub(crate) poses: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) force: Force,
+}
+
+/// The arguments of `bag`.
+#[derive(Debug, Args)]
+pub struct Bag {
+    /// A bag of ROS 2: an MCAP file
+    pub(crate) bag: PathBuf,
+}
+
+/// What is read from a bag.
+#[derive(Debug, Args)]
+pub(crate) struct BagParts {
+    /// Topics of a bag whose sensors make the map [default: all of the kind of --sensor]
+    #[arg(long = "topic", value_name = "NAME")]
+    topics: Vec<String>,
+    /// Frame of the map, in a bag [default: `map` if the robot hangs on it, else the root of its frames]
+    #[arg(long, value_name = "FRAME")]
+    map_frame: Option<String>,
+    /// Frame of the robot's centre, in a bag
+    #[arg(long, value_name = "FRAME", default_value = "base_link")]
+    base_frame: String,
+}
+
+impl BagParts {
+    pub(crate) fn options(&self) -> BagOptions {
+        BagOptions {
+            topics: self.topics.clone(),
+            map_frame: self.map_frame.clone(),
+            base_frame: self.base_frame.clone(),
+        }
+    }
 }
 
 /// The arguments of `truth`.

@@ -420,5 +420,5 @@ fn every_shipped_campaign_is_sound() {
         }
     }
     let file = shipped("configs/ablation.ron");
-    assert!(shell.expect(&format!("campaign {file} --check"), 0).out.contains("186 runs"));
+    assert!(shell.expect(&format!("campaign {file} --check"), 0).out.contains("62 runs"));
 }

@@ -5,7 +5,7 @@ use covmap::CoverageMap;
 use covmap_explore::Event;
 use covmap_io::{MapCell, load_map_server, read_json_lines};
 use covmap_lab::TraceHeader;
-use covmap_log::{LogOptions, LogReader, Sensor};
+use covmap_log::{BagOptions, LogOptions, LogReader, Sensor};
 use covmap_sonar::{Range, Scan, SonarRing};
 use std::fmt::Write;
 use std::path::Path;
@@ -191,7 +191,8 @@ fn the_log_of_a_run_is_read_back_as_the_same_scans() {
     let ring = SonarRing::from_specification(&header.config.robot.ring).unwrap();
     // The log states everything about the ring.
     let other = SonarRing::new(ring.beams()[..1].to_vec()).unwrap();
-    let options = LogOptions { sensor: Sensor::Sonar, ring: other, poses: None };
+    let options =
+        LogOptions { sensor: Sensor::Sonar, ring: other, poses: None, bag: BagOptions::default() };
     let mut log = LogReader::open(shell.path("run.log"), &options).unwrap();
     let expected = scans(&trace);
     assert_eq!(expected.len(), 12);
