@@ -191,6 +191,8 @@ fn what_is_foreign_has_one_home() {
 fn only_files_and_the_program_touch_the_file_system() {
     let homes =
         ["covmap-campaign", "covmap-cli", "covmap-draw", "covmap-io", "covmap-lab", "covmap-log"];
+    // A bag is read from and written to what others opened.
+    let traits_only = ["use std::io::Read;", "use std::io::Write;", "use std::io;"];
     for package in packages().iter().filter(|package| !homes.contains(&package.as_str())) {
         for source in rust_files(&root().join("crates").join(package).join("src")) {
             let text = std::fs::read_to_string(&source).unwrap();
@@ -198,7 +200,10 @@ fn only_files_and_the_program_touch_the_file_system() {
             for word in
                 ["std::fs", "File::", "println!", "std::io", "std::env::var", "std::env::args"]
             {
-                let named = code.lines().any(|l| !l.trim().starts_with("//") && l.contains(word));
+                let named = code.lines().any(|l| {
+                    let is_trait = package == "covmap-bag" && traits_only.contains(&l);
+                    !l.trim().starts_with("//") && !is_trait && l.contains(word)
+                });
                 assert!(!named, "{} names {word}", source.display());
             }
         }

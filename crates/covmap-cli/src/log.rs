@@ -27,7 +27,9 @@ pub(crate) fn run(arguments: &Log) -> Result<ExitCode> {
         (true, true) => bag_of_run(arguments),
         (false, true) => bag_of_log(arguments),
         (false, false) => {
-            in_folder(dir)?;
+            if dir.is_dir() {
+                in_folder(dir)?;
+            }
             Err(anyhow!(
                 "{}: is no run of `explore`; name the new file {}.mcap, and a log becomes a bag",
                 dir.display(),

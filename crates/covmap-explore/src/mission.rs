@@ -66,7 +66,7 @@ pub struct Mission {
     /// Limits of the run.
     pub limits: Limits,
     /// Whether a decision tells what its five best candidates would gain, though the strategy does not weigh
-    /// gains. What the robot does is the same without, and CL and counting take two thirds of the time.
+    /// gains. What the robot does is the same without, and takes less time.
     pub explains: bool,
 }
 

@@ -84,6 +84,16 @@ fn a_bag_holds_the_scans_that_were_written() {
 }
 
 #[test]
+fn scans_of_one_place_and_time_stay_apart() {
+    let stands = |range| scan(1.0, 0.5, 0.0, Range::Echo(range));
+    let (frames, account) =
+        read(&written(&[stands(1.0), stands(2.0), stands(3.0)]), &options(Sensor::Sonar));
+    let first: Vec<Range> = frames.iter().map(|frame| frame.scan.ranges[0]).collect();
+    assert_eq!(first, [1.0, 2.0, 3.0].map(Range::Echo));
+    assert!(account.notes.is_empty(), "{:?}", account.notes);
+}
+
+#[test]
 fn a_bag_that_is_cut_off_is_read_to_its_last_whole_chunk() {
     let scans: Vec<Scan> =
         (0..400).map(|i| scan(f64::from(i), 0.01 * f64::from(i), 0.0, Range::NoEcho)).collect();

@@ -11,7 +11,7 @@ use std::io::Write;
 
 /// The frames of a bag that covmap writes.
 pub const FRAMES: [&str; 3] = ["map", "odom", "base_link"];
-/// Time between two messages that would have the same time, though the robot moved \[ns\].
+/// Time between two scans, or two places, that would have the same time \[ns\].
 const NEXT: i64 = 1000;
 /// The largest number of sensors that have a topic each.
 const MOST_TOPICS: usize = 128;
@@ -57,6 +57,7 @@ pub struct RosBagWriter<'a, W: Write> {
     scans: usize,
     /// The last stamp, with the pose there.
     last: Option<(Stamp, Isometry2<f64>)>,
+    last_scan: Option<Stamp>,
 }
 
 impl<'a, W: Write> RosBagWriter<'a, W> {
@@ -69,7 +70,7 @@ impl<'a, W: Write> RosBagWriter<'a, W> {
         if sensors > MOST_TOPICS {
             return Err(BagWriterError::Sensors(sensors));
         }
-        Ok(Self { ring, bag: BagWriter::new(out)?, scans: 0, last: None })
+        Ok(Self { ring, bag: BagWriter::new(out)?, scans: 0, last: None, last_scan: None })
     }
 
     /// Writes that the robot passes a pose between two scans, at this time \[s\].
@@ -78,6 +79,10 @@ impl<'a, W: Write> RosBagWriter<'a, W> {
     /// If the bag cannot be written.
     pub fn pass(&mut self, time: f64, pose: &Isometry2<f64>) -> Result<Stamp, BagWriterError> {
         let stamp = self.stamp(time, pose);
+        self.place(stamp, pose)
+    }
+
+    fn place(&mut self, stamp: Stamp, pose: &Isometry2<f64>) -> Result<Stamp, BagWriterError> {
         if self.last.is_none() {
             self.begin(stamp)?;
         }
@@ -106,7 +111,12 @@ impl<'a, W: Write> RosBagWriter<'a, W> {
         if sensors != ranges {
             return Err(BagWriterError::Count { scan: self.scans, ranges, sensors });
         }
-        let stamp = self.pass(scan.time, &scan.pose)?;
+        let mut stamp = self.stamp(scan.time, &scan.pose);
+        if self.last_scan == Some(stamp) {
+            stamp = after(stamp);
+        }
+        self.place(stamp, &scan.pose)?;
+        self.last_scan = Some(stamp);
         for (sensor, (beam, range)) in self.ring.beams().iter().zip(&scan.ranges).enumerate() {
             let header = Header { stamp, frame_id: frame_of(sensor) };
             self.bag.write(&topic_of(sensor), stamp, &message(header, beam, range))?;
@@ -152,13 +162,16 @@ impl<'a, W: Write> RosBagWriter<'a, W> {
     fn stamp(&self, time: f64, pose: &Isometry2<f64>) -> Stamp {
         let stamp = Stamp::from_seconds(time.max(0.0));
         match self.last {
-            Some((last, at)) if at != *pose && stamp <= last => {
-                Stamp::from_nanos(last.nanos() + NEXT)
-            }
+            Some((last, at)) if at != *pose && stamp <= last => after(last),
             Some((last, _)) => stamp.max(last),
             None => stamp,
         }
     }
+}
+
+/// Returns the next stamp.
+fn after(stamp: Stamp) -> Stamp {
+    Stamp::from_nanos(stamp.nanos() + NEXT)
 }
 
 /// The frame of a sensor.

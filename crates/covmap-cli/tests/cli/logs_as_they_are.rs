@@ -1,6 +1,6 @@
 //! `map` of logs from real users: their clocks, keyframes and longest ranges.
 
-use crate::typed::{Shell, Typed};
+use crate::typed::{Shell, Typed, shipped};
 use covmap::CoverageMap;
 use nalgebra::Point2;
 use std::fmt::Write;
@@ -143,11 +143,43 @@ fn a_log_of_another_sensor_or_kind_says_what_it_is() {
     shell.refuse("map sonar.log --sensor laser", &["but 40 lines SONAR; try --sensor sonar"]);
     shell.refuse("survey sonar.log --out s.ron", &["no line FLASER", "but 40 lines SONAR"]);
     shell.write("a.bag", b"#ROSBAG V2.0\n\x45\0\0\0");
-    shell.refuse("map a.bag", &["a.bag: is a bag of ROS 1", "`rosbag`"]);
+    shell.refuse("map a.bag", &["a.bag: is a bag of ROS 1", "`rosbags`"]);
     shell.write("a.db3", b"SQLite format 3\0\x10\0");
     shell.refuse("map a.db3", &["a.db3: is an SQLite database", "rosbag2"]);
     shell.write("a.mcap", b"\x89MCAP0\r\n");
-    shell.refuse("survey a.mcap --out s.ron", &["a.mcap: is an MCAP recording"]);
+    shell.refuse("survey a.mcap --out s.ron", &["a.mcap: is not an MCAP recording"]);
     shell.write("log.txt", b"CARMENMAPFILEv020");
     shell.refuse("map log.txt", &["log.txt: is a map of CARMEN"]);
+}
+
+#[test]
+fn a_run_becomes_a_bag_that_is_listed_and_mapped() {
+    let shell = Shell::new();
+    shell.expect(
+        &format!(
+            "explore {} --resolution 0.2 --max-scans 12 --quiet --out run",
+            shipped("scenarios/lab.ron")
+        ),
+        3,
+    );
+    let told = shell.expect("log run --out run.mcap", 0).out;
+    assert!(told.contains("12 scans, run.mcap") && told.contains("run.foxglove.json"), "{told}");
+    let listed = shell.expect("bag run.mcap", 0).out;
+    for part in [
+        "/sonar_23     sensor_msgs/msg/Range",
+        "/candidates",
+        "base_link moves in odom",
+        "sonar_00 fixed to base_link",
+    ] {
+        assert!(listed.contains(part), "{part}: {listed}");
+    }
+    shell.expect("map run.mcap --resolution 0.2 --every 0 --quiet --out map", 0);
+    assert_eq!(shell.json("map/summary.json")["scans"], 12);
+    shell.refuse("map run.mcap --sensor laser --out m", &["no message of type", "/sonar_00 ("]);
+    shell.refuse("map run.mcap --base-frame robot --out m", &["no pose of the frame `robot`"]);
+    shell.refuse("bag run.foxglove.json", &["run.foxglove.json: is not an MCAP recording"]);
+    shell
+        .refuse("log run.mcap --out run.log", &["run.mcap: ", "run.mcap, and a log becomes a bag"]);
+    let again = shell.expect("log run.mcap --out again.mcap", 0).out;
+    assert!(again.contains("12 scans"), "{again}");
 }

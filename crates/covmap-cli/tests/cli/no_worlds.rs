@@ -30,7 +30,7 @@ fn our_own_files_are_told_from_worlds() {
 
 #[test]
 fn files_of_others_are_named() {
-    let bags = "nothing here reads bags";
+    let bags = "makes a map of a bag in an MCAP file";
     refuse("drive.bag", "#ROSBAG V2.0\n", &["a bag of ROS 1", bags, "cargo xtask map"]);
     refuse("drive_0.db3", "SQLite format 3\0....", &["a bag of ROS 2", bags]);
     refuse("drive.mcap", b"\x89MCAP0\r\n\x01", &["a bag of ROS 2", bags]);

@@ -105,8 +105,8 @@ fn of_folder(folder: &Path) -> Option<Kind> {
     }
 }
 
-const BAGS: &str = "nothing here reads bags; write its scans and odometry as a log of CARMEN, \
-                    from which `cargo xtask map` makes a map";
+const BAGS: &str = "no world; `cargo xtask map` makes a map of a bag in an MCAP file, which the Python \
+                    package `rosbags` makes of any other bag";
 const PLANS: &str = "nothing here reads it; draw it as a PNG or PGM image, and describe that in a \
                      YAML file as map_server does, or write its walls as a scenario (.ron)";
 
