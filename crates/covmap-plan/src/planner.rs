@@ -1,6 +1,7 @@
 //! The planner: the owner of the exploration, the stalls and the gain cache.
 
 mod cost;
+mod driving;
 mod search;
 
 use crate::decision::{Contest, REPORTED, Score};
@@ -11,8 +12,8 @@ use crate::traversable::Traversable;
 use crate::turning::straight;
 use crate::window::Window;
 use crate::{
-    BodyEvidence, CandidateRecord, Decision, InPlace, PlannerError, PlannerParameters, Scope,
-    Strategy, TravelCosts, travel_costs,
+    BodyEvidence, CandidateRecord, Decision, PlannerError, PlannerParameters, Scope, Strategy,
+    TravelCosts, travel_costs,
 };
 use crate::{Scoring, Situation};
 use covmap::{Cell, Change, CoverageMap, Grid, Raster};
@@ -202,11 +203,6 @@ impl Planner {
         self.take_over(map, changes);
     }
 
-    /// Takes note that the robot measures while it drives, at this distance \[m\].
-    pub fn measure_while_driving(&mut self, every: f64) {
-        self.apart = (self.parameters.in_place == InPlace::AtViewPoints).then_some(every);
-    }
-
     /// Sets whether decisions tell the gains of their five best candidates even if the strategy does not weigh
     /// gains; at first they do.
     pub fn explain(&mut self, explains: bool) {
@@ -307,19 +303,6 @@ impl Planner {
         indices.retain(|i| trapped || !self.measured.is_spent(*i));
         self.leave_the_last_scan(&mut indices, from);
         Candidates { indices, costs, passage: Vec::new() }
-    }
-
-    /// While driving, leaves out what is nearer to the last scan than scans are to each other; of view-points
-    /// that are all that near, the robot's own, if there is another.
-    fn leave_the_last_scan(&self, indices: &mut Vec<usize>, from: Cell) {
-        let (Some(apart), Some(last)) = (self.apart, self.last_scan) else { return };
-        let is_apart = |i: usize| (self.grid.center(self.grid.cell(i)) - last).norm() >= apart;
-        let own = self.grid.index(from);
-        if indices.iter().any(|i| is_apart(*i)) {
-            indices.retain(|i| is_apart(*i));
-        } else if indices.len() > 1 {
-            indices.retain(|i| Some(*i) != own);
-        }
     }
 
     /// The candidates with their costs for a robot in the cell `from`, without gains and scores.
