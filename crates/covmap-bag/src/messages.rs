@@ -116,6 +116,7 @@ pub(crate) fn frame(name: &str) -> String {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "numbers that are exact")]
 mod tests {
     use super::*;
 

@@ -40,6 +40,7 @@ pub fn planar(pose: &Isometry2<f64>) -> Transform {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "numbers that are exact")]
 mod tests {
     use super::*;
     use nalgebra::Vector2;

@@ -8,6 +8,7 @@ mod bag_log;
 mod bag_options;
 mod bag_survey;
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "numbers that are exact")]
 mod bag_tests;
 mod bag_writer;
 mod carmen;

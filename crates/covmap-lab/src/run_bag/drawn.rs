@@ -122,6 +122,7 @@ fn reason(decision: &Decision) -> String {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "numbers that are exact")]
 mod tests {
     use super::*;
     use nalgebra::Point2;
