@@ -12,7 +12,7 @@ use crate::terminal::progress::Progress;
 use crate::terminal::say;
 use anyhow::{Result, anyhow};
 use covmap_explore::Event;
-use covmap_io::{FileError, NewFile, read_json_lines};
+use covmap_io::{FileError, NewFile, Replace, read_json_lines};
 use covmap_lab::{RunPath, TraceHeader, files, in_folder, read_header, write_run_bag};
 use covmap_log::{BagOptions, CarmenWriter, CarmenWriterError, LogOptions, Sensor};
 use covmap_sonar::SonarRing;
@@ -58,20 +58,12 @@ fn bag_of_run(arguments: &Log) -> Result<ExitCode> {
     let replace = output::replace(out, *force, &[&trace])?;
     let mut file = NewFile::create(out, replace)?;
     let scans = write_run_bag(&trace, &mut file)?;
-    file.finish()?;
-    let layout = layout::write(out, replace)?;
-    say::line(format!(
-        "{scans} scans, {}; a layout for Foxglove: {}",
-        out.display(),
-        layout.display()
-    ));
-    Ok(ExitCode::SUCCESS)
+    finish(file, (out, replace), scans)
 }
 
 fn bag_of_log(arguments: &Log) -> Result<ExitCode> {
     let Log { dir, out, force, config, poses } = arguments;
-    let built_in = if dir.is_dir() { built_in::SONAR8 } else { built_in::B21R };
-    let (config, name) = files::config(config.as_deref(), built_in)?;
+    let (config, name) = files::config(config.as_deref(), built_in::of_sonars(dir))?;
     files::check(&config, &name)?;
     let (ring, _) = config.build()?;
     let (sensor, bag) = (Sensor::Sonar, BagOptions::default());
@@ -85,9 +77,14 @@ fn bag_of_log(arguments: &Log) -> Result<ExitCode> {
     let scans = log.write_bag(&mut file, &terminal)?;
     interrupt.done();
     let Some(scans) = scans else { return Ok(interrupt::EXIT_CODE.into()) };
+    progress.finish();
+    finish(file, (out, replace), scans)
+}
+
+/// Gives a bag its name, writes the layout beside it, and says so.
+fn finish(file: NewFile, (out, replace): (&Path, Replace), scans: usize) -> Result<ExitCode> {
     file.finish()?;
     let layout = layout::write(out, replace)?;
-    progress.finish();
     say::line(format!(
         "{scans} scans, {}; a layout for Foxglove: {}",
         out.display(),

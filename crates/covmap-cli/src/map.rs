@@ -77,8 +77,7 @@ fn named_config(arguments: &Map) -> Result<(Config, PathBuf), LabError> {
     let file = arguments.config.as_deref();
     match arguments.sensor {
         SensorName::Laser => files::config(file, built_in::LASER),
-        SensorName::Sonar if arguments.log.is_dir() => files::config(file, built_in::SONAR8),
-        SensorName::Sonar => files::config(file, built_in::B21R),
+        SensorName::Sonar => files::config(file, built_in::of_sonars(&arguments.log)),
     }
 }
 

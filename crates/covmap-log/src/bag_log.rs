@@ -133,20 +133,18 @@ impl BagLog {
                 Ok(odometry) => self.moved(&as_transform(&odometry), false, account),
                 Err(error) => self.lost_pose(line, &error.to_string(), account),
             }
-        } else if message.is::<RangeMessage>() && self.sensor == Sensor::Sonar {
-            if self.survey.mounts.keys().any(|(topic, _)| *topic == message.topic) {
-                match RangeMessage::from_cdr(&message.data) {
-                    Ok(range) => self.gather(&message.topic, &range, account),
-                    Err(error) => self.unreadable(line, &error.to_string(), account),
+        } else if self.survey.reads(&message.topic) {
+            let done = match self.sensor {
+                Sensor::Sonar if message.is::<RangeMessage>() => {
+                    RangeMessage::from_cdr(&message.data)
+                        .map(|range| self.gather(&message.topic, &range, account))
                 }
-            }
-        } else if message.is::<LaserScan>()
-            && self.sensor == Sensor::Laser
-            && self.survey.mounts.keys().any(|(topic, _)| *topic == message.topic)
-        {
-            match LaserScan::from_cdr(&message.data) {
-                Ok(scan) => self.laser(&message.topic, &scan, account),
-                Err(error) => self.unreadable(line, &error.to_string(), account),
+                Sensor::Laser if message.is::<LaserScan>() => LaserScan::from_cdr(&message.data)
+                    .map(|scan| self.laser(&message.topic, &scan, account)),
+                Sensor::Sonar | Sensor::Laser => Ok(()),
+            };
+            if let Err(error) = done {
+                self.unreadable(line, &error.to_string(), account);
             }
         }
     }
@@ -221,19 +219,14 @@ impl BagLog {
     fn close(&mut self, account: &mut Account) {
         let Some(Gathered { stamp, line, ranges }) = self.gathered.take() else { return };
         account.skipped.add_frame();
-        let beams: Vec<Beam> = self.survey.beams.values().copied().collect();
-        let values: Vec<f32> = self
-            .survey
-            .beams
-            .keys()
-            .map(|name| ranges.get(name).copied().unwrap_or(f32::NEG_INFINITY))
-            .collect();
         let survey = &self.survey;
+        let value = |name| ranges.get(name).copied().unwrap_or(f32::NEG_INFINITY);
+        let values: Vec<f32> = survey.beams.keys().map(value).collect();
         let ring = self.sonar.ring((), (0.0, 0.0), (account, RangeMessage::TYPE), |(), told| {
             for name in survey.beams.keys() {
                 told.take(survey.place(name), "/tf_static");
             }
-            Ok(beams)
+            Ok(survey.beams.values().copied().collect())
         });
         self.measured((stamp, line), ring, &values, account);
     }

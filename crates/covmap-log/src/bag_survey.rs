@@ -2,12 +2,12 @@
 
 use super::device::short;
 use super::{BagOptions, LogError, LogOptions, Sensor, lines};
-use covmap_bag::messages::{LaserScan, Odometry, RangeMessage, RosMessage};
+use covmap_bag::messages::{LaserScan, Odometry, RangeMessage, RosMessage, TransformStamped};
 use covmap_bag::planar::in_plane;
 use covmap_bag::{BagInfo, BagMessage, BagReader, TransformError};
 use covmap_sonar::Beam;
 use nalgebra::{Isometry2, Vector3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The largest number of sensors.
@@ -48,9 +48,9 @@ struct Found {
     info: BagInfo,
     /// The first message of each sensor of ranges.
     ranges: BTreeMap<SensorName, RangeMessage>,
-    lasers: BTreeMap<SensorName, ()>,
-    /// Topic, frame and child frame of odometry.
-    odometry: BTreeMap<String, (String, String)>,
+    lasers: BTreeSet<SensorName>,
+    /// The first message of each topic of odometry.
+    odometry: BTreeMap<String, Odometry>,
 }
 
 impl Found {
@@ -64,24 +64,39 @@ impl Found {
             }
         } else if is_wanted && message.is::<LaserScan>() && self.lasers.len() < MOST_SENSORS {
             if let Ok(scan) = LaserScan::from_cdr(&message.data) {
-                self.lasers.entry(name(scan.header.frame_id)).or_insert(());
+                self.lasers.insert(name(scan.header.frame_id));
             }
         } else if message.is::<Odometry>()
+            && !self.odometry.contains_key(&message.topic)
             && let Ok(odometry) = Odometry::from_cdr(&message.data)
         {
-            let frames = (odometry.header.frame_id.clone(), odometry.child_frame_id.clone());
-            let is_first = self.odometry.insert(message.topic.clone(), frames).is_none();
-            if is_first && !self.info.transforms.has_parent(&odometry.child_frame_id) {
-                // Transforms may follow, and then take its place.
-                self.info.transforms.add(&as_transform(&odometry), false);
-            }
+            self.odometry.insert(message.topic.clone(), odometry);
+        }
+    }
+
+    /// Lets odometry tell of the frames of which no transform does; returns its topics.
+    fn use_odometry(&mut self) -> Vec<String> {
+        let transforms = &mut self.info.transforms;
+        let untold =
+            |(_, odometry): &(&String, &Odometry)| !transforms.has_parent(&odometry.child_frame_id);
+        let used: Vec<_> = self.odometry.iter().filter(untold).collect();
+        for (_, odometry) in &used {
+            transforms.add(&as_transform(odometry), false);
+        }
+        used.into_iter().map(|(topic, _)| topic.clone()).collect()
+    }
+
+    fn sensors(&self, kind: Sensor) -> Vec<SensorName> {
+        match kind {
+            Sensor::Sonar => self.ranges.keys().cloned().collect(),
+            Sensor::Laser => self.lasers.iter().cloned().collect(),
         }
     }
 }
 
 /// Returns the pose of odometry as a transform.
-pub(super) fn as_transform(odometry: &Odometry) -> covmap_bag::messages::TransformStamped {
-    covmap_bag::messages::TransformStamped {
+pub(super) fn as_transform(odometry: &Odometry) -> TransformStamped {
+    TransformStamped {
         header: odometry.header.clone(),
         child_frame_id: odometry.child_frame_id.clone(),
         transform: odometry.pose,
@@ -92,16 +107,10 @@ impl BagSurvey {
     /// Reads a bag once.
     pub(super) fn read(path: &Path, options: &LogOptions) -> Result<Self, LogError> {
         let (mut reader, mut found) = (BagReader::new(path, lines::open(path)?), Found::default());
-        let mut tells = BTreeMap::new();
         for message in &mut reader {
-            let message = message?;
-            if message.is::<covmap_bag::messages::TfMessage>()
-                && let Ok(tf) = covmap_bag::messages::TfMessage::from_cdr(&message.data)
-            {
-                tells.extend(tf.transforms.into_iter().map(|t| (t.child_frame_id, ())));
-            }
-            found.add(&message, &options.bag);
+            found.add(&message?, &options.bag);
         }
+        let odometry = found.use_odometry();
         let mut notes = Vec::new();
         if let Some(cut_off) = reader.cut_off() {
             notes.push(format!(
@@ -114,10 +123,7 @@ impl BagSurvey {
             what,
             topics: found.info.topics_in_words(),
         };
-        let wanted: Vec<SensorName> = match options.sensor {
-            Sensor::Sonar => found.ranges.keys().cloned().collect(),
-            Sensor::Laser => found.lasers.keys().cloned().collect(),
-        };
+        let wanted = found.sensors(options.sensor);
         if wanted.is_empty() {
             let type_name = match options.sensor {
                 Sensor::Sonar => RangeMessage::TYPE,
@@ -150,8 +156,6 @@ impl BagSurvey {
                 transforms.root(&base)
             )));
         }
-        let odometry = found.odometry.iter().filter(|(_, (_, child))| !tells.contains_key(child));
-        let odometry = odometry.map(|(topic, _)| topic.clone()).collect();
         let mut mounts = BTreeMap::new();
         for name in wanted {
             match mount(&found.info, &base, &name.1) {
@@ -176,6 +180,12 @@ impl BagSurvey {
         };
         let beams = found.ranges.iter().filter_map(beam).collect();
         Ok(Self { map_frame, base_frame: base, odometry, moving, mounts, beams, notes })
+    }
+
+    /// Whether the sensors of a topic are read.
+    pub(super) fn reads(&self, topic: &str) -> bool {
+        let first = (topic.to_owned(), String::new());
+        self.mounts.range(first..).next().is_some_and(|((known, _), _)| known == topic)
     }
 
     /// Returns the place of a sensor in words.
